@@ -1,0 +1,19 @@
+"""The one error that the library raises for input it cannot mesh."""
+
+
+class ContourError(ValueError):
+    """Input that cannot be meshed; the message says the cause, the place and the remedy.
+
+    `reason` is a short machine-readable word: "not-finite", "too-few-points", "zero-area", "self-intersection",
+    "crossing" (two loops cross), "hole", "open", "not-planar", "edge-length", "too-many-triangles", "too-many-edges".
+    `place` is where it is, in the input's coordinates, or None where the cause has no single place.
+    """
+
+    def __init__(self, reason: str, message: str, place: tuple[float, float] | None = None) -> None:
+        super().__init__(message)
+        self.reason = reason
+        self.place = place
+
+    def __reduce__(self):
+        # ValueError alone would restore from the message only, so the error could not travel between processes.
+        return type(self), (self.reason, str(self), self.place)
