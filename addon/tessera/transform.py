@@ -1,0 +1,78 @@
+"""Feature transformation: Procrustes superimposition of contours onto the regular polygon (paper, section 2.2).
+
+A contour and the regular polygon of as many vertices in the unit circle are centred and normalised; the rotation and the
+scale that bring the contour closest to the polygon are applied. In the plane, with vertices as complex numbers, the SVD of
+the paper reduces to one inner product ``c = <polygon, contour>``: the optimal rotation is ``conj(c) / |c|`` and the trace
+of the singular values (reflections excluded) is ``|c|``.
+
+A cyclic shift of the polygon is a rotation of it, so every choice of "which contour vertex meets the polygon's first one"
+has the same residual. So that the transformation does not depend on where the user's curve starts, the contour is first
+shifted to begin at the vertex farthest from its centre.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+# A contour that hardly resembles the polygon (a spiral, a horseshoe) has a small |c|; scaled by it, it would shrink to a
+# speck that no network has seen.
+SMALLEST_RESEMBLANCE = 0.5
+
+
+@dataclass(frozen=True)
+class Transformation:
+    """Similarity transformations of B contours: ``scale * rotation * (p - centre)`` in complex numbers.
+
+    centre: (B,) complex128; factor: (B,) complex128, scale times rotation; first: (B,) int64, the contour vertex that
+    becomes the first one.
+    """
+
+    centre: np.ndarray
+    factor: np.ndarray
+    first: np.ndarray
+
+    @property
+    def scale(self) -> np.ndarray:
+        """(B,) float64, transformed length over original length (the paper's S)."""
+        return np.abs(self.factor)
+
+    def apply(self, points: np.ndarray) -> np.ndarray:
+        """Take (B, n, 2) points of each contour's plane to the transformed one."""
+        return _as_points((_as_complex(points) - self.centre[:, None]) * self.factor[:, None])
+
+    def invert(self, points: np.ndarray) -> np.ndarray:
+        """Take (B, n, 2) transformed points back."""
+        return _as_points(_as_complex(points) / self.factor[:, None] + self.centre[:, None])
+
+
+def superimpose(contours: np.ndarray) -> Transformation:
+    """Find the transformation of each contour onto the regular polygon.
+
+    contours: (B, N_C, 2) float64, counter-clockwise, all of the same number of edges, not all vertices of one alike.
+    """
+    z = _as_complex(contours)
+    n = z.shape[1]
+    centre = z.mean(axis=1)
+    z = z - centre[:, None]
+    radius = np.abs(z)
+    # Rounded, so that equal radii that differ in the last bits still choose the same vertex.
+    largest = radius.max(axis=1, keepdims=True)
+    first = np.argmax(np.round(radius / largest, 9), axis=1)
+    z = np.take_along_axis(z, (np.arange(n) + first[:, None]) % n, axis=1)
+    size = np.sqrt((np.abs(z) ** 2).sum(axis=1))
+    polygon = np.exp(2j * np.pi * np.arange(n) / n) / np.sqrt(n)
+    c = (z * polygon.conj()).sum(axis=1) / size
+    resemblance = np.abs(c)
+    turn = np.where(resemblance > 1e-12, np.conj(c) / np.maximum(resemblance, 1e-12), 1.0)
+    scale = np.sqrt(n) * np.maximum(resemblance, SMALLEST_RESEMBLANCE) / size
+    return Transformation(centre, scale * turn, first)
+
+
+def _as_complex(points: np.ndarray) -> np.ndarray:
+    return np.ascontiguousarray(points, dtype=np.float64).view(np.complex128)[..., 0]
+
+
+def _as_points(z: np.ndarray) -> np.ndarray:
+    return np.ascontiguousarray(z).view(np.float64).reshape(*z.shape, 2)
