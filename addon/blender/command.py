@@ -1,0 +1,99 @@
+"""`blender -b scene.blend --command tessera mesh --edge-length 0.05 --output out.blend`."""
+
+import argparse
+import os
+import sys
+
+import bpy
+
+from ..tessera.errors import ContourError
+from .meshing import default_edge_length, mesh_outline
+from .reading import READABLE, read_outline
+
+# What a file may well hold besides outlines, such as a camera's path: passed over, unless it was asked for by name.
+_NOT_OUTLINES = frozenset({"open", "not-planar"})
+
+
+def run(arguments: list[str]) -> int:
+    """Mesh the planar closed curves of the open file. Exit status: 0 all, 1 some failed or none was there, 2 usage."""
+    try:
+        options = _parser().parse_args(arguments)
+        objects = _objects(options.objects)
+    except SystemExit as usage:
+        return int(usage.code or 0)
+    outcomes = [_mesh_one(obj, options) for obj in objects]
+    if "meshed" in outcomes:
+        bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath(options.output), check_existing=False)
+    else:
+        print("tessera: nothing was meshed, and nothing written", file=sys.stderr)
+    return 0 if "meshed" in outcomes and "failed" not in outcomes else 1
+
+
+def _mesh_one(obj: bpy.types.Object, options: argparse.Namespace) -> str:
+    """Mesh one object and print its line. Returns "meshed", "passed over" or "failed"."""
+    try:
+        outline = read_outline(obj, bpy.context.evaluated_depsgraph_get())
+        edge_length = default_edge_length([outline]) if options.edge_length is None else options.edge_length
+        meshed = mesh_outline(obj, outline, edge_length, options.boundary)
+    except ContourError as error:
+        if error.reason in _NOT_OUTLINES and options.objects is None:
+            print(f"{obj.name}: passed over ({error.reason}): {error}")
+            return "passed over"
+        print(f"{obj.name}: failed ({error.reason}): {error}", file=sys.stderr)
+        return "failed"
+    meshed.write()
+    report = meshed.report
+    seconds = sum(report.seconds.values())
+    print(
+        f"{obj.name}: {report.n_triangles} triangles, q_worst {report.q_worst:.3f}, q_mean {report.q_mean:.3f}, "
+        f"{seconds:.2f} s"
+    )
+    for warning in report.warnings:
+        print(f"{obj.name}: warning: {warning}", file=sys.stderr)
+    return "meshed"
+
+
+def _objects(names: list[str] | None) -> list[bpy.types.Object]:
+    """The scene's curves and texts in the order of their names, or those named. A wrong name is an error of usage."""
+    scene_objects = bpy.context.scene.objects
+    if names is None:
+        return sorted((obj for obj in scene_objects if obj.type in READABLE), key=lambda obj: obj.name)
+    chosen = []
+    for name in names:
+        obj = scene_objects.get(name)
+        if obj is None or obj.type not in READABLE:
+            print(f"tessera: there is no curve or text named '{name}' in the scene", file=sys.stderr)
+            raise SystemExit(2)
+        chosen.append(obj)
+    return chosen
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="blender -b SCENE.blend --command tessera", description="Planar closed curves to even triangle meshes."
+    )
+    verbs = parser.add_subparsers(dest="verb", required=True)
+    mesh = verbs.add_parser("mesh", help="mesh every planar closed curve and text of the scene, or those named")
+    mesh.add_argument(
+        "--edge-length", type=float, help="target edge length in world units (1/25 of each object's largest outline)"
+    )
+    mesh.add_argument("--objects", nargs="+", metavar="NAME", help="the objects to mesh (all curves and texts)")
+    mesh.add_argument("--boundary", choices=("resample", "keep"), default="resample", help="vertices on the outline")
+    mesh.add_argument("--output", required=True, metavar="OUT.blend", help="the file to write")
+    return parser
+
+
+_handle = None
+
+
+def register() -> None:
+    """Make `--command tessera` known to Blender."""
+    global _handle
+    _handle = bpy.utils.register_cli_command("tessera", run)
+
+
+def unregister() -> None:
+    """Take it back."""
+    global _handle
+    bpy.utils.unregister_cli_command(_handle)
+    _handle = None

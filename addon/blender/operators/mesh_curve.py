@@ -1,0 +1,108 @@
+"""Object > Convert > Triangle Mesh from Outline."""
+
+import bpy
+
+from ...tessera.errors import ContourError
+from ..meshing import Meshed, default_edge_length, mesh_outline
+from ..reading import READABLE, Outline, read_outline
+
+
+class TESSERA_OT_mesh_curve(bpy.types.Operator):
+    """Make an even triangle mesh of each selected planar closed curve or text; the curve stays as it is"""
+
+    bl_idname = "tessera.mesh_curve"
+    bl_label = "Even Triangle Mesh"
+    bl_options = {"REGISTER", "UNDO"}
+
+    # Not remembered from one use to the next: a length that suits one object rarely suits another.
+    edge_length: bpy.props.FloatProperty(
+        name="Edge Length",
+        description="Target length of the triangles' edges, in the world's units. "
+        "At first 1/25 of the longer side of the largest outline",
+        default=0.0,
+        min=0.0,
+        soft_max=1000.0,
+        precision=4,
+        subtype="DISTANCE",
+        unit="LENGTH",
+        options={"SKIP_SAVE"},
+    )
+    boundary: bpy.props.EnumProperty(
+        name="Boundary",
+        description="Which vertices the mesh has on the outline",
+        items=(
+            ("RESAMPLE", "Resample", "Vertices at the target edge length along the outline; corners are kept"),
+            ("KEEP", "Keep", "Exactly the vertices of the outline at the curve's resolution, and no other"),
+        ),
+        default="RESAMPLE",
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Object Mode, with a curve or text selected."""
+        if context.mode != "OBJECT":
+            cls.poll_message_set("Leave Edit Mode first")
+            return False
+        if not _selected(context):
+            cls.poll_message_set("Select a curve or a text object")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Mesh everything, and only then make objects: a failure leaves the scene as it was."""
+        objects = _selected(context)
+        try:
+            outlines = [self._read(obj, context) for obj in objects]
+            if not self.properties.is_property_set("edge_length"):
+                self.edge_length = default_edge_length(outlines)
+            meshed = [self._mesh(obj, outline) for obj, outline in zip(objects, outlines, strict=True)]
+        except _Failure as failure:
+            self.report({"ERROR"}, str(failure))
+            return {"CANCELLED"}
+        _show(context, [m.write() for m in meshed], objects)
+        self._summarise(meshed)
+        return {"FINISHED"}
+
+    def _read(self, obj: bpy.types.Object, context: bpy.types.Context) -> Outline:
+        try:
+            return read_outline(obj, context.evaluated_depsgraph_get())
+        except ContourError as error:
+            raise _Failure(obj, error) from error
+
+    def _mesh(self, obj: bpy.types.Object, outline: Outline) -> Meshed:
+        try:
+            return mesh_outline(obj, outline, self.edge_length, self.boundary)
+        except ContourError as error:
+            raise _Failure(obj, error) from error
+
+    def _summarise(self, meshed: list[Meshed]) -> None:
+        for m in meshed:
+            for warning in m.report.warnings:
+                self.report({"WARNING"}, f"{m.obj.name}: {warning}")
+        triangles = sum(len(m.triangles) for m in meshed)
+        worst = min(m.report.q_worst for m in meshed)
+        mean = sum(m.report.q_mean * len(m.triangles) for m in meshed) / triangles
+        self.report({"INFO"}, f"{triangles} triangles, quality {mean:.3f} on average, {worst:.3f} at worst")
+
+
+class _Failure(Exception):
+    """One object's ContourError, in the words of the one report that the user sees."""
+
+    def __init__(self, obj: bpy.types.Object, error: ContourError) -> None:
+        kind = "Text" if obj.type == "FONT" else "Curve"
+        super().__init__(f"{kind} '{obj.name}': {error}")
+
+
+def _selected(context: bpy.types.Context) -> list[bpy.types.Object]:
+    return [obj for obj in context.selected_objects if obj.type in READABLE]
+
+
+def _show(context: bpy.types.Context, made: list[bpy.types.Object], sources: list[bpy.types.Object]) -> None:
+    """Select the new objects in place of their sources, as Blender's own Convert does."""
+    active = context.view_layer.objects.active
+    for source in sources:
+        source.select_set(False)
+    for obj in made:
+        obj.select_set(True)
+    index = sources.index(active) if active in sources else 0
+    context.view_layer.objects.active = made[index]
