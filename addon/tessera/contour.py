@@ -1,0 +1,177 @@
+"""What a valid contour is: cleaning, orientation, simplicity, and which loop is a hole of which."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .crossings import MOST_PAIRS, crossing_pairs, crossing_place
+from .errors import ContourError
+from .predicates import orientation
+
+# Points closer than this share of the loop's size are one point, and a loop thinner than it has no area.
+TOLERANCE = 1e-12
+
+
+@dataclass(frozen=True)
+class Nesting:
+    """Loops by the even-odd rule: `outer` (o,) and `holes` (h,) by number, and each hole's `parent` (h,)."""
+
+    outer: np.ndarray
+    holes: np.ndarray
+    parent: np.ndarray
+
+
+def signed_area(points: np.ndarray) -> float:
+    """Area of a polygon (k, 2), positive if counter-clockwise."""
+    points = np.asarray(points, dtype=np.float64)
+    x, y = (points - points[0]).T
+    return 0.5 * float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
+
+
+def clean_loop(points: ArrayLike) -> np.ndarray:
+    """A closed loop of points (k, 2) as a simple counter-clockwise polygon (n, 2) float64 of the same points.
+
+    Consecutive repeated points are dropped, collinear ones stay. Raises ContourError "not-finite", "too-few-points",
+    "zero-area" or "self-intersection"; ValueError if the shape is not (k, 2).
+    """
+    (result,) = clean_domains([[points]])
+    if isinstance(result, ContourError):
+        raise result
+    return result[0]
+
+
+def clean_domains(domains: Sequence[Sequence[ArrayLike]]) -> list[list[np.ndarray] | ContourError]:
+    """`clean_loop` for every loop of every domain, all at once; loops of one domain must not meet either ("crossing").
+
+    Gives for each domain its loops, or the error that it has.
+    """
+    results: list[list[np.ndarray] | ContourError] = []
+    for loops in domains:
+        try:
+            results.append([_without_repeats(_checked(points)) for points in loops])
+        except ContourError as error:
+            results.append(error)
+    complete = False
+    while not complete:
+        errors, complete = _meeting_errors(results)
+        results = [errors.get(i, result) for i, result in enumerate(results)]
+    return [r if isinstance(r, ContourError) else [_counter_clockwise(p) for p in r] for r in results]
+
+
+def _counter_clockwise(loop: np.ndarray) -> np.ndarray:
+    # Exact, unlike the sum of the area: a simple polygon turns as it runs at its leftmost (then lowest) vertex.
+    corner = np.lexsort((loop[:, 1], loop[:, 0]))[0]
+    turn = orientation(loop[corner - 1], loop[corner], loop[(corner + 1) % len(loop)])
+    return loop if turn > 0 else loop[::-1].copy()
+
+
+def _checked(points: ArrayLike) -> np.ndarray:
+    points = np.array(points, dtype=np.float64)
+    if points.size == 0:
+        points = points.reshape(0, 2)
+    if points.ndim != 2 or points.shape[1] != 2:
+        raise ValueError(f"a contour is an array of shape (k, 2), not {points.shape}")
+    bad = np.nonzero(~np.isfinite(points).all(axis=1))[0]
+    if len(bad):
+        message = f"Point {bad[0]} (counting from 0) of the contour has a coordinate that is not a finite number. "
+        raise ContourError("not-finite", message + "Remove the point or correct it.")
+    return points
+
+
+def _without_repeats(points: np.ndarray) -> np.ndarray:
+    """The points that are not at the place of the one before; raises if no polygon is left."""
+    place = tuple(map(float, points[0])) if len(points) else None
+    if len(points):
+        size = float(np.ptp(points, axis=0).max())
+        apart = np.abs(points - np.roll(points, 1, axis=0)).max(axis=1) > TOLERANCE * size
+        # Of a closing point repeated at the end, the first point stays.
+        if not apart[0] and apart.any():
+            apart[0], apart[np.nonzero(apart)[0][-1]] = True, False
+        points = points[apart]
+    if len(np.unique(points, axis=0)) < 3:
+        message = "The contour has fewer than three distinct points. Add points, so that it encloses an area."
+        raise ContourError("too-few-points", message, place)
+    relative = (points - points[0]) / size
+    far = relative[np.argmax(np.sum(relative**2, axis=1))]
+    across = relative[:, 0] * far[1] - relative[:, 1] * far[0]
+    if np.abs(across).max() <= TOLERANCE * np.linalg.norm(far):
+        message = "All points of the contour lie on one line, so it encloses no area. Move some of them off the line."
+        raise ContourError("zero-area", message, place)
+    return points
+
+
+def _meeting_errors(results: list) -> tuple[dict[int, ContourError], bool]:
+    """Errors of the domains whose edges meet, by domain, and whether these are all there are."""
+    valid = [(i, loop) for i, result in enumerate(results) if isinstance(result, list) for loop in result]
+    if not valid:
+        return {}, True
+    length = np.array([len(loop) for _, loop in valid])
+    domain = np.repeat([i for i, _ in valid], length)
+    loop = np.repeat(np.arange(len(valid)), length)
+    start = np.concatenate([p for _, p in valid])
+    end = start[_next_in_loop(length)]
+    errors: dict[int, ContourError] = {}
+    pairs = crossing_pairs(start, end, domain)
+    for first, second in pairs[np.unique(domain[pairs[:, 0]], return_index=True)[1]]:
+        place = crossing_place(start, end, np.array([first, second]))
+        errors[int(domain[first])] = _meeting_error(loop[first] == loop[second], place)
+    for first, second in _repeated_points(start, domain):
+        same = loop[first] == loop[second]
+        errors.setdefault(int(domain[first]), _meeting_error(same, (float(start[first, 0]), float(start[first, 1]))))
+    return errors, len(pairs) <= MOST_PAIRS
+
+
+def _next_in_loop(length: np.ndarray) -> np.ndarray:
+    """For loops (m,) laid one behind the other, the number of the point that follows each point."""
+    last = np.cumsum(length) - 1
+    following = np.arange(1, length.sum() + 1)
+    following[last] = last - length + 1
+    return following
+
+
+def _repeated_points(points: np.ndarray, domain: np.ndarray) -> np.ndarray:
+    """Pairs (k, 2) of points of one domain in the same place: one that edges meet in without crossing."""
+    order = np.lexsort((points[:, 1], points[:, 0], domain))
+    one, other = order[:-1], order[1:]
+    same = np.all(points[one] == points[other], axis=1) & (domain[one] == domain[other])
+    return np.column_stack([one, other])[same]
+
+
+def _meeting_error(same_loop: bool, place: tuple[float, float]) -> ContourError:
+    where = f"near ({place[0]:.9g}, {place[1]:.9g})"
+    if same_loop:
+        message = f"The contour crosses or touches itself {where}. Move points there to keep its edges apart."
+        return ContourError("self-intersection", message, place)
+    message = f"Two contours cross or touch each other {where}. Move them apart, or join them into one contour."
+    return ContourError("crossing", message, place)
+
+
+def nesting(loops: Sequence[np.ndarray]) -> Nesting:
+    """Which of the cleaned loops (k, 2) of one domain, that do not meet, are outer contours and which are holes."""
+    n = len(loops)
+    low, high = (np.array([extreme(p, axis=0) for p in loops]).reshape(n, 2) for extreme in (np.min, np.max))
+    inside = np.zeros((n, n), dtype=bool)
+    for i, loop in enumerate(loops):
+        candidates = np.nonzero(np.all((low[i] < low) & (high < high[i]), axis=1))[0]
+        first = np.array([loops[j][0] for j in candidates]).reshape(-1, 2)
+        inside[candidates, i] = points_inside(first, loop)
+    depth = inside.sum(axis=1)
+    holes = np.nonzero(depth % 2 == 1)[0]
+    # The loop directly around a hole is the one around it that itself lies deepest.
+    parent = np.argmax(np.where(inside[holes], depth + 1, 0), axis=1) if len(holes) else holes
+    return Nesting(np.nonzero(depth % 2 == 0)[0], holes, parent)
+
+
+def points_inside(points: np.ndarray, loop: np.ndarray) -> np.ndarray:
+    """Whether points (n, 2), none of them on the polygon (k, 2), lie inside it; exact -> (n,) bool."""
+    start, end = loop, np.roll(loop, -1, axis=0)
+    inside = np.zeros(len(points), dtype=bool)
+    for rows in np.array_split(np.arange(len(points)), 1 + len(points) * len(loop) // 1_000_000):
+        height = points[rows, None, 1]
+        point, edge = np.nonzero((start[:, 1] > height) != (end[:, 1] > height))
+        rising = np.where(end[edge, 1] > start[edge, 1], 1, -1)
+        to_the_right = orientation(start[edge], end[edge], points[rows[point]]) == rising
+        inside[rows] = np.bincount(point, to_the_right, minlength=len(rows)).astype(int) % 2 == 1
+    return inside
