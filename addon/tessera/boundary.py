@@ -1,0 +1,144 @@
+"""Vertices on contours at the target edge length: corners kept, even spacing between them, the polygon simple again."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from .crossings import crossing_pairs
+from .predicates import orientation
+
+# A vertex is a corner where the contour turns by more than this; a regular polygon of 12 sides, which turns by 30
+# degrees at its vertices, is still a coarse circle.
+CORNER_ANGLE = np.radians(32.0)
+# After so many rounds of single insertions all the given vertices between two neighbours are inserted at once.
+_PATIENCE = 12
+
+
+def resample(loop: np.ndarray, edge_length: float, corner_angle: float = CORNER_ANGLE) -> np.ndarray:
+    """`resample_loops` for one simple counter-clockwise polygon (k, 2) -> (n, 2)."""
+    return resample_loops([loop], edge_length, corner_angle=corner_angle)[0]
+
+
+def resample_loops(
+    loops: Sequence[np.ndarray],
+    edge_length: float | np.ndarray,
+    domain: np.ndarray | None = None,
+    corner_angle: float = CORNER_ANGLE,
+) -> list[np.ndarray]:
+    """New vertices for simple counter-clockwise polygons (k, 2); they are simple and counter-clockwise again.
+
+    edge_length: one, or one for each loop (m,). domain (m,) int: loops of one domain, which do not meet, do not meet
+    afterwards either; without it each loop is a domain of its own.
+
+    The vertices lie on the given polyline. Corners (turning by more than `corner_angle`) stay; between two of them are
+    as many edges as come nearest to `edge_length`, equally long along the polyline. A loop without corners starts at
+    its leftmost vertex, wherever its list starts. Where even spacing would make the polygon meet itself, given vertices
+    are inserted until it does not.
+    """
+    length = np.array([len(loop) for loop in loops])
+    edge_length = np.broadcast_to(np.asarray(edge_length, dtype=np.float64), len(loops))
+    group = np.arange(len(loops)) if domain is None else np.asarray(domain)
+    points, breaks = _from_a_corner(np.concatenate(loops), length, corner_angle)
+    # One loop after the other: running sums must not depend on what else is in the batch.
+    ends = np.cumsum(length)[:-1]
+    positions = list(map(_even_spacing, np.split(points, ends), np.split(breaks, ends), edge_length))
+    loop, position = np.repeat(np.arange(len(loops)), [len(p) for p in positions]), np.concatenate(positions)
+    rounds = 0
+    while True:
+        samples = _points_at(points, length, loop, position)
+        extra_loop, extra_position, hopeless = _insertions(samples, points, length, loop, position, group, rounds)
+        if len(hopeless):
+            # New vertices are rounded off the polyline, and it nearly touches there: only the given ones are sure.
+            kept = ~np.isin(loop, hopeless)
+            loop, position = loop[kept], position[kept]
+            extra_loop = np.repeat(hopeless, length[hopeless])
+            extra_position = np.concatenate([np.arange(n, dtype=float) for n in length[hopeless]])
+        elif len(extra_loop) == 0:
+            return np.split(samples, np.cumsum(np.bincount(loop))[:-1])
+        loop, position = np.concatenate([loop, extra_loop]), np.concatenate([position, extra_position])
+        order = np.lexsort((position, loop))
+        loop, position = loop[order], position[order]
+        rounds += 1
+
+
+def _neighbours(length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The vertex before and after each vertex, for loops of `length` (m,) one behind the other."""
+    first = np.cumsum(length) - length
+    before, after = np.arange(length.sum()) - 1, np.arange(length.sum()) + 1
+    before[first], after[first + length - 1] = first + length - 1, first
+    return before, after
+
+
+def _from_a_corner(points: np.ndarray, length: np.ndarray, corner_angle: float) -> tuple[np.ndarray, np.ndarray]:
+    """The loops' points turned to start at a corner, or at the leftmost vertex; and which of them end an arc."""
+    before, after = _neighbours(length)
+    came, goes = points - points[before], points[after] - points
+    turning = np.arctan2(came[:, 0] * goes[:, 1] - came[:, 1] * goes[:, 0], np.sum(came * goes, axis=1))
+    corner = np.abs(turning) > corner_angle
+    loop = np.repeat(np.arange(len(length)), length)
+    first = np.cumsum(length) - length
+    start = np.lexsort((points[:, 1], points[:, 0], ~corner, loop))[first] - first
+    turned = (np.arange(len(points)) - first[loop] + start[loop]) % length[loop] + first[loop]
+    points, corner = points[turned], corner[turned]
+    corner[first] = True
+    return points, corner
+
+
+def _even_spacing(points: np.ndarray, breaks: np.ndarray, edge_length: float) -> np.ndarray:
+    """Places (n,) of one loop's new vertices: the number of the edge they lie on plus the share of it before them."""
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1))])
+    arc_start = np.nonzero(breaks)[0]
+    arc_length = np.diff(along[arc_start], append=along[-1])
+    n_edges = np.maximum(np.rint(arc_length / edge_length), 1).astype(np.int64)
+    n_edges[np.argmax(arc_length)] += max(3 - n_edges.sum(), 0)
+    arc = np.repeat(np.arange(len(arc_start)), n_edges)
+    step = np.arange(len(arc)) - np.repeat(np.cumsum(n_edges) - n_edges, n_edges)
+    target = along[arc_start[arc]] + step / n_edges[arc] * arc_length[arc]
+    edge = np.where(step == 0, arc_start[arc], np.searchsorted(along[:-1], target, side="right") - 1)
+    share = (target - along[edge]) / (along[edge + 1] - along[edge])
+    # Below 1, also after the number of the edge is added.
+    return edge + np.where(step == 0, 0.0, np.clip(share, 0.0, 1.0 - 2.0**-30))
+
+
+def _points_at(points: np.ndarray, length: np.ndarray, loop: np.ndarray, position: np.ndarray) -> np.ndarray:
+    _, after = _neighbours(length)
+    edge = np.floor(position).astype(np.int64)
+    part = (position - edge)[:, None]
+    start = edge + (np.cumsum(length) - length)[loop]
+    return np.where(part == 0, points[start], (1 - part) * points[start] + part * points[after[start]])
+
+
+def _insertions(samples, points, length, loop, position, group, rounds):
+    """Given vertices to insert where the polygons meet, as loops and positions; and the loops where none is left."""
+    count = np.bincount(loop, minlength=len(length))
+    _, after = _neighbours(count)
+    pairs = crossing_pairs(samples, samples[after], group[loop])
+    bad = np.zeros(len(samples), dtype=bool)
+    bad[pairs.ravel()] = True
+    bad |= (_clockwise(samples, count) & (np.bincount(loop, bad, minlength=len(length)) == 0))[loop]
+    edges = np.nonzero(bad)[0]
+    first = (np.cumsum(length) - length)[loop[edges]]
+    low = np.floor(position[edges]).astype(np.int64) + 1
+    end = np.where(after[edges] > edges, position[after[edges]], length[loop[edges]])
+    between = np.maximum(np.ceil(end).astype(np.int64) - low, 0)
+    edge = np.repeat(np.arange(len(edges)), between)
+    vertex = np.arange(len(edge)) - np.repeat(np.cumsum(between) - between, between) + low[edge]
+    if rounds < _PATIENCE and len(edge):
+        a, b = samples[edges][edge], samples[after[edges]][edge]
+        offset, along = points[first[edge] + vertex] - a, b - a
+        distance = np.abs(along[:, 0] * offset[:, 1] - along[:, 1] * offset[:, 0])
+        farthest = np.lexsort((distance, edge))[np.cumsum(between[between > 0]) - 1]
+        edge, vertex = edge[farthest], vertex[farthest]
+    helped = np.zeros(len(length), dtype=bool)
+    helped[loop[edges[edge]]] = True
+    # Loops that meet help each other: only where nobody can insert anything is it hopeless.
+    helped_group = np.isin(group, group[helped])
+    return loop[edges[edge]], vertex.astype(float), np.setdiff1d(loop[edges], np.nonzero(helped_group)[0])
+
+
+def _clockwise(points: np.ndarray, count: np.ndarray) -> np.ndarray:
+    """Which of the simple polygons, one behind the other, run clockwise; exact, at their leftmost vertices."""
+    before, after = _neighbours(count)
+    loop = np.repeat(np.arange(len(count)), count)
+    corner = np.lexsort((points[:, 1], points[:, 0], loop))[np.cumsum(count) - count]
+    return orientation(points[before[corner]], points[corner], points[after[corner]]) <= 0
