@@ -16,13 +16,24 @@ def draw(rng: np.random.Generator, kind: str) -> tuple[np.ndarray, float]:
     """One transformed contour of a kind, (N_C, 2) float64, counter-clockwise and simple, and its l_s."""
     while True:
         points, edge_length = {"sector": sector, "cell": cell, "star": star}[kind](rng)
-        if not is_good(points):
-            continue
-        transformation = superimpose(points[None])
-        points = np.roll(transformation.apply(points[None])[0], -int(transformation.first[0]), axis=0)
-        if kind != "sector":
-            edge_length *= float(transformation.scale[0])
-        return points, edge_length
+        if is_good(points):
+            points, scale = transformed(points)
+            return points, edge_length if kind == "sector" else edge_length * scale
+
+
+def transformed_sector(rng: np.random.Generator, n: int) -> np.ndarray:
+    """One transformed sector contour of n edges, (n, 2)."""
+    while True:
+        points, _ = sector(rng, n)
+        if is_good(points):
+            return transformed(points)[0]
+
+
+def transformed(points: np.ndarray) -> tuple[np.ndarray, float]:
+    """A contour superimposed on the regular polygon, and the scale."""
+    transformation = superimpose(points[None], np.array([len(points)]))
+    points = np.roll(transformation.apply(points[None])[0], -int(transformation.first[0]), axis=0)
+    return points, float(transformation.scale[0])
 
 
 def sector(rng: np.random.Generator, n: int | None = None) -> tuple[np.ndarray, float]:

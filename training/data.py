@@ -239,7 +239,7 @@ def sub_contour(rng: np.random.Generator, points: np.ndarray, n_contour: int) ->
     walk = peel(opposite, n_contour, n, rng.random(int(rng.integers(1, n_contour + 3))))
     rest = np.setdiff1d(np.arange(n_contour, n), walk)
     contour, inner = points[walk], points[rest]
-    transformation = superimpose(contour[None])
+    transformation = superimpose(contour[None], np.array([len(contour)]))
     contour = np.roll(transformation.apply(contour[None])[0], -int(transformation.first[0]), axis=0)
     inner = transformation.apply(inner[None])[0]
     return np.concatenate([contour, inner]), len(walk)

@@ -47,19 +47,28 @@ class Transformation:
         return _as_points(_as_complex(points) / self.factor[:, None] + self.centre[:, None])
 
 
-def superimpose(contours: np.ndarray) -> Transformation:
+def superimpose(contours: np.ndarray, n_contour: np.ndarray) -> Transformation:
     """Find the transformation of each contour onto the regular polygon.
 
-    contours: (B, N_C, 2) float64, counter-clockwise, all of the same number of edges, not all vertices of one alike.
+    contours: (B, N, 2) float64, counter-clockwise, the first n_contour (B,) vertices of each count and are not all alike.
     """
-    z = _as_complex(contours)
+    centre = np.zeros(len(contours), dtype=np.complex128)
+    factor = np.ones(len(contours), dtype=np.complex128)
+    first = np.zeros(len(contours), dtype=np.int64)
+    for n in np.unique(n_contour):
+        rows = n_contour == n
+        centre[rows], factor[rows], first[rows] = _superimpose(_as_complex(contours[rows, :n]))
+    return Transformation(centre, factor, first)
+
+
+def _superimpose(z: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Centre, factor and first vertex of contours of the same number of vertices, (B, N_C) complex."""
     n = z.shape[1]
     centre = z.mean(axis=1)
     z = z - centre[:, None]
     radius = np.abs(z)
     # Rounded, so that equal radii that differ in the last bits still choose the same vertex.
-    largest = radius.max(axis=1, keepdims=True)
-    first = np.argmax(np.round(radius / largest, 9), axis=1)
+    first = np.argmax(np.round(radius / radius.max(axis=1, keepdims=True), 9), axis=1)
     z = np.take_along_axis(z, (np.arange(n) + first[:, None]) % n, axis=1)
     size = np.sqrt((np.abs(z) ** 2).sum(axis=1))
     polygon = np.exp(2j * np.pi * np.arange(n) / n) / np.sqrt(n)
@@ -67,7 +76,7 @@ def superimpose(contours: np.ndarray) -> Transformation:
     resemblance = np.abs(c)
     turn = np.where(resemblance > 1e-12, np.conj(c) / np.maximum(resemblance, 1e-12), 1.0)
     scale = np.sqrt(n) * np.maximum(resemblance, SMALLEST_RESEMBLANCE) / size
-    return Transformation(centre, scale * turn, first)
+    return centre, scale * turn, first
 
 
 def _as_complex(points: np.ndarray) -> np.ndarray:

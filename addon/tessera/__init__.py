@@ -1,0 +1,14 @@
+"""Tessera: planar closed curves to even triangle meshes, by three small neural networks.
+
+>>> import tessera
+>>> mesh = tessera.mesh([[(0, 0), (4, 0), (4, 3), (0, 3)]], 0.5)
+>>> mesh.report.q_worst > 0.5
+True
+"""
+
+from .errors import ContourError
+from .mesh import Mesh, Report
+from .meshing import mesh, mesh_contour, mesh_many
+from .quality import element_quality
+
+__all__ = ["ContourError", "Mesh", "Report", "element_quality", "mesh", "mesh_contour", "mesh_many"]

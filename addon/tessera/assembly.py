@@ -1,0 +1,38 @@
+"""From meshed cells to one mesh: cells share the vertices along their common edges."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .scheme import mesh_contours
+from .stopwatch import Stopwatch
+
+
+def mesh_cells(
+    points: np.ndarray, cells: np.ndarray, edge_length: np.ndarray, watch: Stopwatch
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Put every cell through the scheme.
+
+    points: (p, 2); cells: (c, N) int, counter-clockwise vertex numbers, padded with -1, 3 to 16 each; edge_length: (c,).
+    Returns vertices (n, 2), the points first and then the inner vertices; triangles (m, 3) int64; the cell of each
+    triangle (m,); fallbacks of each cell (c,).
+    """
+    n_contour = (cells >= 0).sum(axis=1)
+    meshes = mesh_contours(points[np.maximum(cells, 0)], n_contour, edge_length, watch)
+    row, k = np.nonzero(np.arange(meshes.inner.shape[1]) < meshes.n_inner[:, None])
+    width = int((n_contour + meshes.n_inner).max(initial=3))
+    number = np.zeros((len(cells), width), dtype=np.int64)
+    size = min(width, cells.shape[1])
+    number[:, :size] = cells[:, :size]
+    number[row, n_contour[row] + k] = len(points) + np.arange(len(row))
+    triangles = number[meshes.owner[:, None], meshes.triangles]
+    return np.concatenate([points, meshes.inner[row, k]]), triangles, meshes.owner, meshes.fallbacks
+
+
+def mean_edge_lengths(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """(c,) the average edge length of each cell's contour: the target that the paper meshes a sub-contour at."""
+    count = (cells >= 0).sum(axis=1)
+    index = np.arange(cells.shape[1])
+    after = np.take_along_axis(cells, np.where(index + 1 < count[:, None], index + 1, 0), axis=1)
+    lengths = np.linalg.norm(points[after] - points[cells], axis=-1)
+    return np.where(cells >= 0, lengths, 0).sum(axis=1) / count

@@ -1,0 +1,163 @@
+"""Domains to meshes: the whole way from a user's curves to what `tessera.mesh` returns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .assembly import mean_edge_lengths, mesh_cells
+from .boundary import resample_loops
+from .contour import clean_domains, clean_loop, nesting, signed_area
+from .division import divide
+from .errors import ContourError
+from .mesh import Mesh, make_mesh
+from .placement import MOST_INNER
+from .refinement import off_boundary, refine
+from .relaxation import relax
+from .scheme import LARGEST_CONTOUR, join_vertices, mesh_contours
+from .sizing import grade_from_edges
+from .stopwatch import Stopwatch
+
+MOST_TRIANGLES = 5_000_000
+
+
+def mesh(loops: Sequence[ArrayLike], edge_length: float, *, sizing: None = None, boundary: str = "resample") -> Mesh:
+    """Mesh one domain: the planar region that closed curves bound.
+
+    loops: (k, 2) arrays, in any winding and order; by the even-odd rule outer contours (holes are not meshed yet).
+    edge_length: the target, in the loops' unit. boundary: "resample" places vertices on the given polylines at the target
+    edge length, keeping their corners; "keep" keeps exactly the given vertices and adds none on the contour. sizing: for
+    later; only None is accepted.
+
+    Raises ContourError, whose ``reason`` is a short word, for input that cannot be meshed.
+    """
+    if sizing is not None:
+        raise NotImplementedError("sizing functions are not there yet: leave sizing=None for one target edge length")
+    (result,) = mesh_domains([loops], edge_length, boundary)
+    if isinstance(result, ContourError):
+        raise result
+    return result
+
+
+def mesh_many(domains: Sequence[Sequence[ArrayLike]], edge_length: float) -> list[Mesh | ContourError]:
+    """Mesh a batch of domains, each as `mesh` does: a Mesh, or the ContourError that it has, for each.
+
+    Raises ContourError "edge-length" where no domain could be meshed at that length.
+    """
+    return mesh_domains(domains, edge_length, "resample")
+
+
+def mesh_contour(points: ArrayLike, edge_length: float) -> Mesh:
+    """Mesh one contour by the paper's scheme alone: 3 ≤ N_C ≤ 16, its vertices are the boundary, untouched.
+
+    points: (N_C, 2). The mesh's first N_C vertices are the contour's, counter-clockwise. Raises ContourError.
+    """
+    check_edge_length(edge_length)
+    contour = clean_loop(points)
+    n = len(contour)
+    if n > LARGEST_CONTOUR:
+        message = f"The contour has {n} edges, the scheme alone meshes 3 to {LARGEST_CONTOUR}. Use tessera.mesh, which divides it."
+        raise ContourError("too-many-edges", message)
+    watch = Stopwatch()
+    n_contour = np.array([n])
+    meshes = mesh_contours(contour[None], n_contour, np.array([float(edge_length)]), watch)
+    (vertices,) = join_vertices(contour[None], n_contour, meshes.inner, meshes.n_inner)
+    warnings = ()
+    if meshes.n_inner[0] < meshes.wanted[0]:
+        warnings = (
+            f"{meshes.wanted[0]} inner vertices would suit the target edge length, {meshes.n_inner[0]} were placed "
+            f"(at most {MOST_INNER}): tessera.mesh refines further",
+        )
+    return make_mesh(
+        vertices, meshes.triangles, fallbacks=int(meshes.fallbacks[0]), warnings=warnings, seconds=watch.seconds
+    )
+
+
+def check_edge_length(edge_length: float) -> None:
+    """Raise ContourError "edge-length" unless the target is a positive finite number."""
+    if not (np.isscalar(edge_length) and np.isfinite(edge_length) and edge_length > 0):
+        message = f"The target edge length is {edge_length}; it must be a positive number. Give one in the curve's unit."
+        raise ContourError("edge-length", message)
+
+
+def mesh_domains(domains: Sequence[Sequence[ArrayLike]], edge_length: float, boundary: str) -> list[Mesh | ContourError]:
+    """Mesh many domains as one batch: a Mesh, or the ContourError that it has, for each."""
+    if boundary not in ("resample", "keep"):
+        raise ValueError(f'boundary is "resample" or "keep", not {boundary!r}')
+    check_edge_length(edge_length)
+    watch = Stopwatch()
+    with watch("contours"):
+        results = [checked_domain(result, edge_length) for result in clean_domains(domains)]
+    with watch("boundary"):
+        numbers = [number for number, result in enumerate(results) if not isinstance(result, ContourError)]
+        loops = [(number, loop) for number in numbers for loop in results[number]]
+        domain = np.array([number for number, _ in loops], dtype=np.int64)
+        polygons = [loop for _, loop in loops]
+        if boundary == "resample" and polygons:
+            polygons = resample_loops(polygons, edge_length, domain)
+    if polygons:
+        vertices, triangles, owner, fallbacks = _mesh_polygons(polygons, edge_length, watch)
+        of = domain[owner]
+        fell = np.bincount(domain, fallbacks, minlength=len(results)).astype(int)
+        for number, (part, elements) in zip(numbers, _parts(vertices, triangles, of, numbers), strict=True):
+            results[number] = make_mesh(part, elements, fallbacks=int(fell[number]))
+    for number in numbers:
+        results[number] = replace(results[number], report=replace(results[number].report, seconds=dict(watch.seconds)))
+    return results
+
+
+def checked_domain(loops: list[np.ndarray] | ContourError, edge_length: float) -> list[np.ndarray] | ContourError:
+    """Clean loops, or the error of a domain that has holes or would have too many triangles."""
+    if isinstance(loops, ContourError):
+        return loops
+    if not loops:
+        return ContourError("too-few-points", "The domain has no contour. Give at least one closed loop of points.")
+    nested = nesting(loops)
+    if len(nested.holes):
+        place = tuple(map(float, loops[nested.holes[0]][0]))
+        message = f"Contour {nested.holes[0]} is a hole, near ({place[0]:g}, {place[1]:g}). Holes are not meshed yet: remove it."
+        return ContourError("hole", message, place)
+    wanted = sum(signed_area(loop) for loop in loops) / (np.sqrt(3) / 4 * edge_length**2)
+    wanted += sum(np.linalg.norm(loop - np.roll(loop, 1, axis=0), axis=1).sum() for loop in loops) / edge_length
+    if wanted > MOST_TRIANGLES:
+        message = (
+            f"The target edge length {edge_length:g} asks for about {wanted:.2g} triangles, the most is {MOST_TRIANGLES:,}. "
+            f"Use {edge_length * np.sqrt(wanted / MOST_TRIANGLES) * 1.1:.2g} or more."
+        )
+        return ContourError("too-many-triangles", message)
+    return loops
+
+
+def _mesh_polygons(
+    polygons: list[np.ndarray], edge_length: float, watch: Stopwatch
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Mesh simple polygons: vertices (n, 2), triangles (m, 3), the polygon of each (m,), fallbacks of each polygon."""
+    with watch("division"):
+        division = divide(polygons, edge_length)
+        target = mean_edge_lengths(division.points, division.cells)
+    vertices, triangles, cell, fallbacks = mesh_cells(division.points, division.cells, target, watch)
+    vertices, triangles, parent, more = refine(vertices, triangles, grade_from_edges(polygons, edge_length), watch)
+    with watch("relaxation"):
+        vertices = relax(vertices, triangles, off_boundary(triangles, len(vertices)))
+    owner = division.owner[cell]
+    counts = np.bincount(division.owner, fallbacks, minlength=len(polygons))
+    counts += np.bincount(owner, more, minlength=len(polygons))
+    return vertices, triangles, owner[parent], counts
+
+
+def _parts(
+    vertices: np.ndarray, triangles: np.ndarray, domain: np.ndarray, numbers: list[int]
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """The vertices and triangles of each domain by itself; vertices keep their order."""
+    order = np.argsort(domain, kind="stable")
+    triangles, domain = triangles[order], domain[order]
+    starts = np.searchsorted(domain, numbers)
+    ends = np.searchsorted(domain, numbers, side="right")
+    parts = []
+    for start, end in zip(starts, ends, strict=True):
+        used, local = np.unique(triangles[start:end], return_inverse=True)
+        parts.append((vertices[used], local.reshape(-1, 3)))
+    return parts

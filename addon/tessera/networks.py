@@ -1,0 +1,146 @@
+"""The networks: one ONNX session a role, and one function a role.
+
+All functions take transformed contours, (B, N, 2) with ``n_contour`` (B,) vertices each and padding after them. Contours of
+like size go through a network together; the size they are padded to depends on each contour alone, never on its
+neighbours in the batch, so that a contour's answer is the same in every batch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import onnxruntime
+
+FOLDER = Path(__file__).resolve().parents[2] / "onnx_models"
+
+# Sizes that contours and inner vertices are padded to.
+_PADDED_EDGES = np.array([4, 6, 8, 10, 12, 14, 16, 20, 24, 32, 40, 48, 64])
+_PADDED_INNER = np.array([1, 2, 4, 6, 8, 10, 12, 16, 20, 24, 32])
+# Pairs of tokens in one call: bounds the memory of the attention.
+_CALL_SIZE = 1 << 19
+
+
+@cache
+def session(role: str) -> onnxruntime.InferenceSession:
+    """The session of ``nn1``, ``nn2_scores``, ``nn2_moves`` or ``nn3``; opened once."""
+    options = onnxruntime.SessionOptions()
+    options.log_severity_level = 3
+    return onnxruntime.InferenceSession(FOLDER / f"{role}.onnx", options, providers=["CPUExecutionProvider"])
+
+
+def count_inner_vertices(contour: np.ndarray, n_contour: np.ndarray, l_s: np.ndarray) -> np.ndarray:
+    """NN1: how many inner vertices each contour needs at its scaled target edge length: (B,) int64."""
+    count = np.zeros(len(n_contour))
+    for rows, n, _ in _groups(n_contour, np.zeros_like(n_contour), 1):
+        (count[rows],) = session("nn1").run(
+            None, {"contour": _single(contour, rows, n), "n_contour": n_contour[rows], "l_s": l_s[rows].astype(np.float32)}
+        )
+    # Rounded first: an answer on the border between two counts falls to the same side in every batch.
+    return np.rint(np.round(count, 3)).astype(np.int64)
+
+
+def score_grid(
+    contour: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, l_s: np.ndarray, grid: np.ndarray, n_grid: np.ndarray
+) -> np.ndarray:
+    """NN2: score of each grid point, its distance to the closest of the inner vertices in even edge lengths.
+
+    grid: (B, M, 2), of which the first n_grid (B,) count. Returns (B, M) float64, inf beyond n_grid.
+    """
+    scores = np.full(grid.shape[:2], np.inf)
+    block = 32
+    blocks = -(-n_grid // block) * block
+    for size in np.unique(blocks[n_inner > 0]):
+        chosen = np.flatnonzero((blocks == size) & (n_inner > 0))
+        size = min(size, grid.shape[1])
+        for rows, n, _ in _groups(n_contour[chosen], np.zeros(len(chosen), int), size):
+            rows = chosen[rows]
+            (out,) = session("nn2_scores").run(
+                None,
+                {
+                    "contour": _single(contour, rows, n),
+                    "n_contour": n_contour[rows],
+                    "n_inner": n_inner[rows],
+                    "l_s": l_s[rows].astype(np.float32),
+                    "grid": grid[rows, :size].astype(np.float32),
+                },
+            )
+            scores[rows, :size] = out
+    scores[np.arange(grid.shape[1]) >= n_grid[:, None]] = np.inf
+    return scores
+
+
+def move_inner_vertices(
+    contour: np.ndarray, n_contour: np.ndarray, inner: np.ndarray, n_inner: np.ndarray
+) -> np.ndarray:
+    """NN2's further passes: better places for inner vertices (B, M, 2), all seen at once."""
+    moved = inner.copy()
+    chosen = np.flatnonzero(n_inner > 0)
+    for rows, n, m in _groups(n_contour[chosen], n_inner[chosen]):
+        rows = chosen[rows]
+        (out,) = session("nn2_moves").run(
+            None,
+            {
+                "contour": _single(contour, rows, n),
+                "n_contour": n_contour[rows],
+                "inner": _single(inner, rows, m),
+                "n_inner": n_inner[rows],
+            },
+        )
+        size = min(m, inner.shape[1])
+        moved[rows, :size] = out[:, :size]
+    return np.where((np.arange(inner.shape[1]) < n_inner[:, None])[..., None], moved, inner)
+
+
+def rate_connections(
+    contour: np.ndarray, n_contour: np.ndarray, inner: np.ndarray, n_inner: np.ndarray, possible: np.ndarray
+) -> np.ndarray:
+    """NN3: connection tables (B, F, N + M, 2) of (q_worst, q_mean); 0 where an element is not possible.
+
+    possible: (B, F, N + M) bool; contour vertices are the first N columns, inner vertices the others.
+    """
+    table = np.zeros((*possible.shape, 2))
+    n_padded = contour.shape[1]
+    for rows, n, m in _groups(n_contour, n_inner):
+        row, facet, vertex = np.nonzero(possible[rows])
+        if not len(row):
+            continue
+        column = np.where(vertex < n_padded, vertex, vertex - n_padded + n)
+        (out,) = session("nn3").run(
+            None,
+            {
+                "contour": _single(contour, rows, n),
+                "n_contour": n_contour[rows],
+                "inner": _single(inner, rows, m),
+                "n_inner": n_inner[rows],
+                "entries": np.stack([row, facet, column], axis=1),
+            },
+        )
+        table[rows[row], facet, vertex] = out
+    return table
+
+
+def _groups(n_contour: np.ndarray, n_inner: np.ndarray, per_edge: int = 0) -> Iterator[tuple[np.ndarray, int, int]]:
+    """Rows of like size, with the numbers of edges and of inner vertices to pad them to, a call at a time.
+
+    per_edge: pairs of tokens for each contour edge, where that is not the square of all vertices.
+    """
+    n_padded = _PADDED_EDGES[np.searchsorted(_PADDED_EDGES, n_contour)]
+    m_padded = _PADDED_INNER[np.searchsorted(_PADDED_INNER, n_inner)]
+    key = n_padded * 1000 + m_padded
+    for value in np.unique(key):
+        rows = np.flatnonzero(key == value)
+        n, m = int(value // 1000), int(value % 1000)
+        step = max(1, _CALL_SIZE // (n * per_edge if per_edge else (n + m) ** 2))
+        for start in range(0, len(rows), step):
+            yield rows[start : start + step], n, m
+
+
+def _single(points: np.ndarray, rows: np.ndarray, size: int) -> np.ndarray:
+    """Rows of padded points as (len(rows), size, 2) float32."""
+    out = np.zeros((len(rows), size, 2), dtype=np.float32)
+    width = min(size, points.shape[1])
+    out[:, :width] = points[rows, :width]
+    return out

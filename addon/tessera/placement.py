@@ -1,0 +1,121 @@
+"""From scores to inner vertices (paper, section 2.4): NN2's scores are decoded, then NN2 moves what was placed.
+
+All in the transformed plane, contours padded to (B, N, 2). Whatever the networks say, the vertices that come out are
+distinct and strictly inside their contours.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from . import networks
+from .cavity import distances_to_contour, even_lengths, is_inside
+
+MOST_INNER = 32
+PASSES = 3  # of NN2 over all placed vertices
+
+_GRID = 20  # points along the longer side of a contour's bounding box
+_FINE_GRID = 48  # where the coarser one has too few points in a thin cavity
+
+# In even edge lengths:
+_MARGIN = 0.2  # grid points closer to the contour are left out
+_CLOSEST = 0.3  # to another vertex that a vertex may be placed
+_CROWDED = 0.65  # closer than this to another vertex costs
+_MOVED_MARGIN = 0.08  # to the contour and each other that moved vertices must keep
+
+
+def place_inner_vertices(
+    contour: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, l_s: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Place N_I vertices in each cavity.
+
+    contour: (B, N, 2) float64; n_contour, n_inner: (B,) int64; l_s: (B,). Returns inner vertices (B, M, 2) and how many
+    each contour has, (B,): fewer than asked for where the cavity is too thin to hold them apart.
+    """
+    inner = np.zeros((len(contour), int(n_inner.max(initial=0)), 2))
+    count = np.zeros_like(n_inner)
+    for resolution in (_GRID, _FINE_GRID):
+        rows = np.flatnonzero(count < n_inner)
+        if len(rows):
+            placed, found = _decode(contour[rows], n_contour[rows], n_inner[rows], l_s[rows], resolution)
+            better = found > count[rows]
+            inner[rows[better]], count[rows[better]] = placed[better], found[better]
+    for _ in range(PASSES):
+        inner = _move(contour, n_contour, inner, count)
+    return inner, count
+
+
+def _decode(
+    contour: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, l_s: np.ndarray, resolution: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Choose the grid points of lowest score one after the other, each refined between its neighbours."""
+    even = even_lengths(contour, n_contour, n_inner)
+    grid, spacing = _grid(contour, n_contour, resolution)
+    admissible = is_inside(grid, contour, n_contour)
+    admissible &= distances_to_contour(grid, contour, n_contour) > (_MARGIN * even)[:, None]
+    n_grid = admissible.sum(axis=1)
+    order = np.argsort(~admissible, axis=1, kind="stable")
+    packed = np.take_along_axis(grid, order[..., None], axis=1)
+    scores = np.full(grid.shape[:2], np.inf)
+    found = networks.score_grid(contour, n_contour, n_inner, l_s, packed, n_grid)
+    np.put_along_axis(scores, order, np.round(found, 4), axis=1)
+
+    places = np.clip(grid + _refinement(scores, resolution) * spacing[:, None, None], -np.inf, np.inf)
+    index = np.arange(len(contour))
+    inner, count = np.zeros((len(contour), int(n_inner.max()), 2)), np.zeros_like(n_inner)
+    crowd = np.zeros_like(scores)
+    for k in range(inner.shape[1]):
+        best = np.argmin(scores + crowd, axis=1)
+        fits = np.isfinite((scores + crowd)[index, best]) & (k < n_inner)
+        if not fits.any():
+            break
+        chosen = places[index, best]
+        inner[fits, k] = chosen[fits]
+        count += fits
+        away = np.linalg.norm(places - chosen[:, None], axis=-1) / even[:, None]
+        cost = np.where(away < _CLOSEST, np.inf, 2 * np.maximum(0, 1 - away / _CROWDED))
+        crowd = np.where(fits[:, None], crowd + cost, crowd)
+    return inner, count
+
+
+def _grid(contour: np.ndarray, n_contour: np.ndarray, resolution: int) -> tuple[np.ndarray, np.ndarray]:
+    """Square grids over the bounding boxes: (B, resolution², 2), row by row, and their spacings (B,)."""
+    real = (np.arange(contour.shape[1]) < n_contour[:, None])[..., None]
+    low = np.where(real, contour, np.inf).min(axis=1)
+    high = np.where(real, contour, -np.inf).max(axis=1)
+    spacing = (high - low).max(axis=1) / resolution
+    steps = np.arange(resolution) - (resolution - 1) / 2
+    cells = np.stack(np.meshgrid(steps, steps, indexing="xy"), axis=-1).reshape(-1, 2)
+    return (low + high)[:, None] / 2 + cells * spacing[:, None, None], spacing
+
+
+def _refinement(scores: np.ndarray, resolution: int) -> np.ndarray:
+    """Offsets, in grid spacings, from grid points to the lowest point of the parabola through their neighbours."""
+    surface = scores.reshape(-1, resolution, resolution)
+    padded = np.pad(surface, ((0, 0), (1, 1), (1, 1)), constant_values=np.inf)
+    offsets = np.zeros((*surface.shape, 2))
+    for axis, (before, after) in enumerate(
+        ((padded[:, 1:-1, :-2], padded[:, 1:-1, 2:]), (padded[:, :-2, 1:-1], padded[:, 2:, 1:-1]))
+    ):
+        known = np.isfinite(before) & np.isfinite(after) & np.isfinite(surface)
+        b, c, a = (np.where(known, value, 0) for value in (before, surface, after))
+        bend = b - 2 * c + a
+        hollow = known & (bend > 1e-6)
+        offsets[..., axis] = np.where(hollow, np.clip(0.5 * (b - a) / np.where(hollow, bend, 1), -0.5, 0.5), 0)
+    return offsets.reshape(len(scores), -1, 2)
+
+
+def _move(contour: np.ndarray, n_contour: np.ndarray, inner: np.ndarray, n_inner: np.ndarray) -> np.ndarray:
+    """One pass of NN2 over all placed vertices; a vertex stays where its new place would not be valid."""
+    if not inner.shape[1]:
+        return inner
+    moved = networks.move_inner_vertices(contour, n_contour, inner, n_inner)
+    margin = _MOVED_MARGIN * even_lengths(contour, n_contour, n_inner)[:, None]
+    real = np.arange(inner.shape[1]) < n_inner[:, None]
+    allowed = is_inside(moved, contour, n_contour) & (distances_to_contour(moved, contour, n_contour) > margin)
+    moved = np.where(allowed[..., None], moved, inner)
+    apart = np.linalg.norm(moved[:, :, None] - moved[:, None], axis=-1)
+    apart[~(real[:, :, None] & real[:, None])] = np.inf
+    apart[:, np.arange(inner.shape[1]), np.arange(inner.shape[1])] = np.inf
+    crowded = (apart < margin[..., None]).any(axis=(1, 2))
+    return np.where(crowded[:, None, None], inner, moved)

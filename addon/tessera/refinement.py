@@ -1,0 +1,94 @@
+"""Refinement of a coarse mesh by the scheme itself (paper, Algorithms 5 and 6).
+
+Every edge off the boundary that is longer than the sizing function wants is split into at most five segments; every
+element with a split edge becomes a sub-contour, meshed by the scheme at its own mean edge length; NN2 recomputes the
+places of the inner vertices; until no edge is split. (The listing's condition to split, ``|l_e - l_s| < eps``, is a
+misprint.)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from .assembly import mean_edge_lengths, mesh_cells
+from .mesh import unique_edges
+from .relaxation import relax
+from .stopwatch import Stopwatch
+
+MOST_SEGMENTS = 5
+_MOST_ROUNDS = 20  # five to the power of it is more than any ratio of lengths
+
+Sizing = Callable[[np.ndarray], np.ndarray]
+
+
+def refine(
+    vertices: np.ndarray, triangles: np.ndarray, sizing: Sizing, watch: Stopwatch
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Refine a mesh until its inner edges follow the sizing function.
+
+    vertices: (n, 2); triangles: (m, 3); sizing: (k, 2) points -> (k,) wanted edge lengths. Returns vertices, the old ones
+    first, triangles (t, 3), the old triangle that each is part of (t,), and for each of those the fallbacks (m,).
+    """
+    parent = np.arange(len(triangles))
+    fallbacks = np.zeros(len(triangles), dtype=np.int64)
+    for _ in range(_MOST_ROUNDS):
+        edges, inner = inner_edges(triangles)
+        ends = vertices[edges]
+        length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+        segments = np.rint(length / sizing(ends.mean(axis=1))).astype(np.int64)
+        segments = np.where(inner, np.clip(segments, 1, MOST_SEGMENTS), 1)
+        if segments.max(initial=1) == 1:
+            break
+        points, cells = _sub_contours(vertices, triangles, edges, segments)
+        split = (cells[:, 3:] >= 0).any(axis=1)
+        vertices, new, owner, fell = mesh_cells(points, cells[split], mean_edge_lengths(points, cells[split]), watch)
+        np.add.at(fallbacks, parent[split], fell)
+        parent = np.concatenate([parent[~split], parent[split][owner]])
+        triangles = np.concatenate([triangles[~split], new])
+        with watch("relaxation"):
+            vertices = relax(vertices, triangles, off_boundary(triangles, len(vertices)), passes=1)
+    return vertices, triangles, parent, fallbacks
+
+
+def inner_edges(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The edges (e, 2), smaller vertex first, and whether each lies between two triangles (e,)."""
+    n = int(triangles.max(initial=0)) + 1
+    edges = unique_edges(triangles)
+    sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    count = np.bincount(np.searchsorted(edges[:, 0] * n + edges[:, 1], sides[:, 0] * n + sides[:, 1]), minlength=len(edges))
+    return edges, count == 2
+
+
+def off_boundary(triangles: np.ndarray, n_vertices: int) -> np.ndarray:
+    """(n,) which vertices no boundary edge has."""
+    edges, inner = inner_edges(triangles)
+    free = np.ones(n_vertices, dtype=bool)
+    free[edges[~inner]] = False
+    return free
+
+
+def _sub_contours(
+    vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray, segments: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Insert vertices on the edges: all points (p, 2), and each triangle's contour (m, 15), padded with -1."""
+    n = len(vertices)
+    edge = np.repeat(np.arange(len(edges)), segments - 1)
+    first = np.cumsum(segments - 1) - (segments - 1)
+    step = np.arange(len(edge)) - first[edge] + 1
+    start, end = vertices[edges[edge, 0]], vertices[edges[edge, 1]]
+    inserted = start + (step / segments[edge])[:, None] * (end - start)
+    stride = int(triangles.max()) + 1
+    key = edges[:, 0] * stride + edges[:, 1]
+    cells = np.full((len(triangles), 3, MOST_SEGMENTS), -1, dtype=np.int64)
+    cells[:, :, 0] = triangles
+    for side in range(3):
+        a, b = triangles[:, side], triangles[:, (side + 1) % 3]
+        of = np.searchsorted(key, np.minimum(a, b) * stride + np.maximum(a, b))
+        for k in range(1, MOST_SEGMENTS):
+            here = np.where(a < b, k - 1, segments[of] - 1 - k)
+            cells[:, side, k] = np.where(k < segments[of], n + first[of] + here, -1)
+    cells = cells.reshape(len(triangles), -1)
+    order = np.argsort(cells < 0, axis=1, kind="stable")
+    return np.concatenate([vertices, inserted]), np.take_along_axis(cells, order, axis=1)

@@ -1,0 +1,55 @@
+"""NN2 recomputes the places of a large mesh's inner vertices (paper, Algorithm 5, line 32), across all seams.
+
+Every vertex off the boundary is the only inner vertex of the contour that its neighbours form: NN2 is asked where it
+should be. A move is made where the worst and the mean quality of its elements, added, get better; vertices that move
+together are never neighbours, so no move can spoil another and elements stay valid.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from . import networks
+from .stars import Stars, find_stars, independent_sets
+from .transform import superimpose
+
+LARGEST_STAR = 16
+# A vertex on the straight cut between two cells is often in a local optimum of its own; a few passes spread the error.
+PASSES = 4
+_GAIN = 1e-3
+
+
+def relax(vertices: np.ndarray, triangles: np.ndarray, free: np.ndarray, passes: int = PASSES) -> np.ndarray:
+    """Better places for the ``free`` (n,) vertices of a mesh: (n, 2). Boundary vertices must not be free."""
+    stars = find_stars(triangles, free, LARGEST_STAR)
+    sets = [stars.rows(rows) for rows in independent_sets(stars, len(vertices))]
+    vertices = vertices.copy()
+    for _ in range(passes):
+        for independent in sets:
+            vertices[independent.centre] = _better_places(vertices, independent)
+    return vertices
+
+
+def _better_places(vertices: np.ndarray, stars: Stars) -> np.ndarray:
+    """(S, 2) new places of the stars' centres, or the old ones."""
+    contour, old = vertices[stars.ring], vertices[stars.centre]
+    transformation = superimpose(contour, stars.n_ring)
+    one = np.ones_like(stars.n_ring)
+    moved = networks.move_inner_vertices(
+        transformation.apply(contour), stars.n_ring, transformation.apply(old[:, None]), one
+    )
+    new = transformation.invert(moved)[:, 0]
+    before, after = _star_quality(contour, stars.n_ring, old), _star_quality(contour, stars.n_ring, new)
+    better = after.sum(axis=0) > before.sum(axis=0) + _GAIN
+    return np.where((better & (after[0] > np.minimum(before[0], 0.3)))[:, None], new, old)
+
+
+def _star_quality(ring: np.ndarray, n_ring: np.ndarray, centre: np.ndarray) -> np.ndarray:
+    """(2, S) worst and mean quality of the elements that each centre (S, 2) forms with its ring (S, R, 2)."""
+    index = np.arange(ring.shape[1])
+    real = index < n_ring[:, None]
+    after = np.take_along_axis(ring, np.where(index + 1 < n_ring[:, None], index + 1, 0)[..., None], axis=1)
+    a, b = ring - centre[:, None], after - centre[:, None]
+    squares = (a * a).sum(-1) + (b * b).sum(-1) + ((a - b) ** 2).sum(-1)
+    quality = 2 * np.sqrt(3) * (a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]) / np.maximum(squares, 1e-300)
+    return np.stack([np.where(real, quality, 1).min(axis=1), np.where(real, quality, 0).sum(axis=1) / n_ring])

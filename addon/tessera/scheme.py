@@ -1,0 +1,85 @@
+"""The meshing scheme (paper, section 2): transformation, NN1, NN2, NN3 and triangulation, for a batch of contours."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import networks
+from .placement import MOST_INNER, place_inner_vertices
+from .stopwatch import Stopwatch
+from .transform import superimpose
+from .triangulation import triangulate
+
+LARGEST_CONTOUR = 16
+
+
+@dataclass(frozen=True)
+class ContourMeshes:
+    """Meshes of B contours, in slots: a contour's own vertices first, its inner vertices from ``n_contour`` on."""
+
+    inner: np.ndarray  # (B, M, 2) float64, in the contours' coordinates
+    n_inner: np.ndarray  # (B,) int64
+    wanted: np.ndarray  # (B,) int64, inner vertices that NN1 asked for
+    triangles: np.ndarray  # (t, 3) int32
+    owner: np.ndarray  # (t,) int32
+    fallbacks: np.ndarray  # (B,) int32, elements that NN3's table had no say in
+
+
+def mesh_contours(contours: np.ndarray, n_contour: np.ndarray, edge_length: np.ndarray, watch: Stopwatch) -> ContourMeshes:
+    """Mesh contours, each at its own target edge length.
+
+    contours: (B, N, 2) float64, simple and counter-clockwise, n_contour (B,) vertices each, 3 to 16; edge_length: (B,).
+    """
+    with watch("transformation"):
+        transformation = superimpose(contours, n_contour)
+        transformed = transformation.apply(contours)
+        l_s = edge_length * transformation.scale
+    with watch("NN1"):
+        wanted = networks.count_inner_vertices(transformed, n_contour, l_s)
+    with watch("NN2"):
+        places, n_inner = place_inner_vertices(transformed, n_contour, np.minimum(wanted, MOST_INNER), l_s)
+        inner = transformation.invert(places)
+    with watch("triangulation"):
+        points = join_vertices(contours, n_contour, inner, n_inner)
+        meshes = triangulate(points, n_contour, n_inner, lambda *rest: connect(*rest, watch))
+    return ContourMeshes(inner, n_inner, wanted, meshes.triangles, meshes.owner, meshes.fallbacks)
+
+
+def connect(
+    points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, possible: np.ndarray, watch: Stopwatch
+) -> np.ndarray:
+    """NN3's connection tables of (sub-)contours: (B, F, V, 2).
+
+    points: (B, V, 2), contour vertices first, inner vertices right after them; possible: (B, F, V) bool.
+    """
+    with watch("NN3"):
+        n, m = int(n_contour.max()), max(1, int(n_inner.max()))
+        contour = points[:, :n]
+        # Inner vertices start at each contour's own N_C here and at the padded one in the network.
+        index = np.minimum(n_contour[:, None] + np.arange(m), points.shape[1] - 1)
+        inner = np.take_along_axis(points, index[..., None], axis=1)
+        transformation = superimpose(contour, n_contour)
+        row, facet, vertex = np.nonzero(possible)
+        column = np.where(vertex < n_contour[row], vertex, vertex - n_contour[row] + n)
+        entries = np.zeros((len(points), possible.shape[1], n + m), dtype=bool)
+        entries[row, facet, column] = True
+        rated = networks.rate_connections(
+            transformation.apply(contour), n_contour, transformation.apply(inner), n_inner, entries
+        )
+        table = np.zeros((*possible.shape, 2))
+        # Rounded, so that elements of equal worth are ordered by q_mean, as the paper has it.
+        table[row, facet, vertex] = np.round(rated[row, facet, column], 2)
+        return table
+
+
+def join_vertices(contours: np.ndarray, n_contour: np.ndarray, inner: np.ndarray, n_inner: np.ndarray) -> np.ndarray:
+    """Rows of a contour's vertices and, right after them, its inner vertices: (B, V, 2)."""
+    width = int((n_contour + n_inner).max(initial=3))
+    points = np.zeros((len(contours), width, 2))
+    size = min(width, contours.shape[1])
+    points[:, :size] = contours[:, :size]
+    row, k = np.nonzero(np.arange(inner.shape[1]) < n_inner[:, None])
+    points[row, n_contour[row] + k] = inner[row, k]
+    return points

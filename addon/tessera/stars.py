@@ -1,0 +1,67 @@
+"""Stars: the elements around each vertex of a mesh, and the ring of its neighbours as a contour."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Stars:
+    """Rings of S vertices: centre (S,) vertex numbers, ring (S, R) neighbours counter-clockwise, padded, n_ring (S,)."""
+
+    centre: np.ndarray
+    ring: np.ndarray
+    n_ring: np.ndarray
+
+    def rows(self, rows: np.ndarray) -> Stars:
+        """The chosen stars."""
+        return Stars(self.centre[rows], self.ring[rows], self.n_ring[rows])
+
+
+def find_stars(triangles: np.ndarray, free: np.ndarray, largest: int) -> Stars:
+    """The stars of the ``free`` (n,) vertices, which must be off the boundary; those of over ``largest`` edges left out.
+
+    triangles: (m, 3) counter-clockwise.
+    """
+    n = len(free)
+    centre = triangles.astype(np.int64).ravel()
+    after, before = np.roll(triangles, -1, axis=1).ravel(), np.roll(triangles, -2, axis=1).ravel()
+    keep = free[centre]
+    centre, after, before = centre[keep], after[keep], before[keep]
+    order = np.argsort(centre * n + after)
+    centre, after, before = centre[order], after[order], before[order]
+    # Around a vertex, the element that starts at neighbour `before` follows.
+    following = np.searchsorted(centre * n + after, centre * n + before)
+    start = np.flatnonzero(np.diff(centre, prepend=-1))
+    count = np.diff(start, append=len(centre))
+    start, count = start[count <= largest], count[count <= largest]
+    ring = np.zeros((len(start), int(count.max(initial=1))), dtype=np.int64)
+    corner = start
+    for k in range(ring.shape[1]):
+        ring[:, k] = np.where(k < count, after[corner], ring[:, 0])
+        corner = following[corner]
+    return Stars(centre[start], ring, count)
+
+
+def independent_sets(stars: Stars, n_vertices: int) -> list[np.ndarray]:
+    """Rows of stars in sets, no two centres of a set neighbours; every star is in one set.
+
+    Each round takes the stars whose number, scrambled, is the largest among their neighbours left.
+    """
+    # A fixed scrambling: neighbours in space are often neighbours in number, which would make long chains.
+    rank = np.argsort(np.argsort((np.arange(n_vertices, dtype=np.uint64) * np.uint64(11400714819323198485)), kind="stable"))
+    row_of = np.full(n_vertices, -1)
+    row_of[stars.centre] = np.arange(len(stars.centre))
+    neighbour = row_of[stars.ring]
+    neighbour[np.arange(stars.ring.shape[1]) >= stars.n_ring[:, None]] = -1
+    left = np.ones(len(stars.centre), dtype=bool)
+    sets = []
+    while left.any():
+        own = np.where(left, rank[stars.centre], -1)
+        around = np.where(neighbour >= 0, own[neighbour], -1).max(axis=1)
+        chosen = left & (own > around)
+        sets.append(np.flatnonzero(chosen))
+        left &= ~chosen
+    return sets

@@ -1,0 +1,135 @@
+"""Export trained networks to ONNX: ``python -m training.export [ROLE ...]``.
+
+Every file is checked against the framework's own output on several shapes, and carries its configuration, seed, data
+fingerprint and code version in its metadata.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import onnx
+import onnxruntime
+import torch
+
+from . import configuration
+from .networks import ROLES
+
+INPUTS = {
+    "nn1": ["contour", "n_contour", "l_s"],
+    "nn2_scores": ["contour", "n_contour", "n_inner", "l_s", "grid"],
+    "nn2_moves": ["contour", "n_contour", "inner", "n_inner"],
+    "nn3": ["contour", "n_contour", "inner", "n_inner", "entries"],
+}
+AXES = {
+    "contour": {0: "batch", 1: "edges"},
+    "n_contour": {0: "batch"},
+    "n_inner": {0: "batch"},
+    "l_s": {0: "batch"},
+    "grid": {0: "batch", 1: "points"},
+    "inner": {0: "batch", 1: "vertices"},
+    "entries": {0: "entries"},
+}
+TOLERANCE = 1e-4
+
+
+def sample(rng: np.random.Generator, batch: int, edges: int, vertices: int) -> dict[str, torch.Tensor]:
+    """Random inputs of every name: star-shaped contours and points in the disk, some of it padding."""
+    n_contour = torch.tensor(rng.integers(3, edges + 1, batch))
+    angle = 2 * np.pi * (np.arange(edges) + rng.random((batch, edges)) * 0.8) / n_contour.numpy()[:, None]
+    radius = rng.uniform(0.4, 1.1, (batch, edges))
+    contour = np.stack([radius * np.cos(angle), radius * np.sin(angle)], -1)
+    n_inner = torch.tensor(rng.integers(1, vertices + 1, batch))
+    entries = np.stack([rng.integers(0, batch, 50), np.zeros(50, int), rng.integers(2, 3, 50)], 1)
+    return {
+        "contour": torch.tensor(contour, dtype=torch.float32),
+        "n_contour": n_contour,
+        "n_inner": n_inner,
+        "l_s": torch.tensor(rng.uniform(0.3, 1, batch), dtype=torch.float32),
+        "grid": torch.tensor(rng.uniform(-1, 1, (batch, 40, 2)), dtype=torch.float32),
+        "inner": torch.tensor(rng.uniform(-0.5, 0.5, (batch, vertices, 2)), dtype=torch.float32),
+        "entries": torch.tensor(entries),
+    }
+
+
+def largest_difference(net: torch.nn.Module, file: Path, role: str) -> float:
+    """Between the file's answers and the framework's, over random shapes."""
+    rng = np.random.default_rng(0)
+    session = onnxruntime.InferenceSession(file, providers=["CPUExecutionProvider"])
+    worst = 0.0
+    for batch, edges, vertices in [(1, 3, 1), (2, 4, 1), (5, 16, 12), (33, 9, 24), (8, 32, 3), (3, 16, 32)]:
+        inputs = {name: value for name, value in sample(rng, batch, edges, vertices).items() if name in INPUTS[role]}
+        with torch.no_grad():
+            ours = net(**inputs).numpy()
+        (theirs,) = session.run(None, {name: value.numpy() for name, value in inputs.items()})
+        worst = max(worst, float(np.abs(ours - theirs).max()))
+    return worst
+
+
+def data_fingerprint(folder: Path) -> str:
+    """A hash over the names and contents of the training shards."""
+    digest = hashlib.sha256()
+    for file in sorted((folder / "train").glob("[0-9]*.npz")):
+        digest.update(file.name.encode())
+        digest.update(hashlib.sha256(file.read_bytes()).digest())
+    return digest.hexdigest()[:16]
+
+
+def code_version() -> str:
+    command = ["git", "-C", str(configuration.ROOT), "rev-parse", "--short", "HEAD"]
+    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
+
+
+def export(role: str) -> None:
+    state = torch.load(configuration.ROOT / "runs" / f"{role}.pt", map_location="cpu", weights_only=False)
+    net = ROLES[role]()
+    net.load_state_dict(state["average"])
+    net.eval()
+    file = configuration.ROOT / "onnx_models" / f"{role}.onnx"
+    file.parent.mkdir(exist_ok=True)
+    inputs = sample(np.random.default_rng(1), 4, 12, 6)
+    torch.onnx.export(
+        net,
+        tuple(inputs[name] for name in INPUTS[role]),
+        file,
+        input_names=INPUTS[role],
+        output_names=["out"],
+        dynamic_axes={name: AXES[name] for name in INPUTS[role]},
+        opset_version=17,
+        dynamo=False,
+    )
+    model = onnx.load(file)
+    config = state["config"]
+    metadata = {
+        "role": role,
+        "configuration": json.dumps(config),
+        "seed": str(config["train"]["seed"]),
+        "steps": str(state["step"]),
+        "data": data_fingerprint(configuration.ROOT / config["data"]["folder"]),
+        "code": code_version(),
+    }
+    onnx.helper.set_model_props(model, metadata)
+    model.doc_string = ""
+    for node in model.graph.node:
+        node.doc_string = ""
+    onnx.save(model, file)
+    difference = largest_difference(net, file, role)
+    if difference > TOLERANCE:
+        raise SystemExit(f"{file.name} departs from the framework's output by {difference:.1e}")
+    print(f"{file.name}: {file.stat().st_size / 1e6:.2f} MB, {state['step']} steps, differs by at most {difference:.1e}")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("roles", nargs="*", default=list(ROLES), choices=[*ROLES, []])
+    for role in parser.parse_args().roles:
+        export(role)
+
+
+if __name__ == "__main__":
+    main()
