@@ -1,9 +1,10 @@
 """The cavities that elements leave open: groups of edges, their splitting, and the sub-contours that they become.
 
-A contour's 2 F edge places hold the boundaries of all its cavities. Place 2 f holds facet f or, once f is connected to a
-vertex v, the edge from f's start to v; place 2 f + 1 then holds the edge from v to f's end. The cavity lies on their left.
-Going around a cavity is going through its places in cyclic order: connecting facet f puts its two new edges where f was,
-and if v already is on the cavity's boundary, the places after f and before v's become a cavity of their own.
+A contour's 2 F edge places hold the boundaries of all its cavities. Place 2 f holds facet f or, once f is connected to
+a vertex v, the edge from f's start to v; place 2 f + 1 then holds the edge from v to f's end. The cavity lies on their
+left. Going around a cavity is going through its places in cyclic order: connecting facet f puts its two new edges
+where f was, and if v already is on the cavity's boundary, the places after f and before v's become a cavity of their
+own.
 """
 
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ from .visibility import edge_starts
 
 @dataclass(frozen=True)
 class Contours:
-    """A batch of (sub-)contours, (B, V) padded: `slots` are vertices of the point row `owner`, contour vertices first."""
+    """A batch of (sub-)contours, contour vertices first: `slots` are their vertices in the point row `owner`."""
 
     points: np.ndarray  # (B, V, 2) float64
     slots: np.ndarray  # (B, V) int32
@@ -44,8 +45,8 @@ def join(parts: list[Contours]) -> Contours:
     width = max(part.points.shape[1] for part in parts)
     padding = [((0, 0), (0, width - part.points.shape[1])) for part in parts]
     return Contours(
-        np.concatenate([np.pad(part.points, (*pad, (0, 0))) for part, pad in zip(parts, padding)]),
-        np.concatenate([np.pad(part.slots, pad) for part, pad in zip(parts, padding)]),
+        np.concatenate([np.pad(part.points, (*pad, (0, 0))) for part, pad in zip(parts, padding, strict=True)]),
+        np.concatenate([np.pad(part.slots, pad) for part, pad in zip(parts, padding, strict=True)]),
         np.concatenate([part.owner for part in parts]),
         np.concatenate([part.n_contour for part in parts]),
         np.concatenate([part.n_inner for part in parts]),
@@ -61,7 +62,9 @@ def open_contours(n_contour: np.ndarray) -> Boundaries:
     return Boundaries(starts[:, 1:].copy(), np.repeat(starts[:, :-1], 2, axis=1), group)
 
 
-def add_elements(boundaries: Boundaries, row: np.ndarray, facet: np.ndarray, vertex: np.ndarray, number: int) -> np.ndarray:
+def add_elements(
+    boundaries: Boundaries, row: np.ndarray, facet: np.ndarray, vertex: np.ndarray, number: int
+) -> np.ndarray:
     """Add element (facet, vertex) to each of the contours `row` (n,); a cavity that it splits off becomes `number`.
 
     Returns which facets are used up: no cavity is left at their place: (n, F) bool.

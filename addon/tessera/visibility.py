@@ -1,19 +1,20 @@
 """Which elements are possible: exact signs of all triangles on contour vertices, and the tests made of them.
 
-Every decision of the triangulation is taken from one tensor of exact signs, so no two decisions can contradict each
-other. It is computed once a recursion level, in floating point with an error bound; entries below the bound go to
-`predicates.orientation`.
+Every decision of the triangulation is taken from exact signs, so no two decisions can contradict each other. They are
+computed once a recursion level, as batched products of small matrices in single precision; what the error bound leaves
+open goes to `predicates.orientation`.
 """
 
 import numpy as np
 
 from .predicates import orientation
 
-# |det - exact| <= 2^-50 * (|dx| + |dy|) * largest |d|: each of the two products is off by at most (1 + u)^3 - 1 of
-# itself, the difference by u, u = 2^-53 (Shewchuk 1997, section 4.3), and the bound leaves a factor of two.
-_ERROR_BOUND = 2.0**-50
-# Numbers in a temporary: contours are taken in blocks of about this size, which stay in the processor's cache.
-_BLOCK_SIZE = 1 << 17
+# Signs are first taken in single precision, u = 2^-24, with a contour's largest offset as unit. An offset is off by at
+# most 2 u of itself, one of them is scaled (another u), a product adds u, their difference u: 6 u (|left| + |right|) in
+# all. The bound is 8 u = 2^-21 of a number that is at least |left| + |right|.
+_ERROR_BOUND = 2.0**-21
+# Signs computed at a time, so that the temporaries stay in the processor's cache.
+_BLOCK_SIZE = 1 << 16
 
 
 def edge_starts(n_contour: np.ndarray) -> np.ndarray:
@@ -26,47 +27,46 @@ def edge_starts(n_contour: np.ndarray) -> np.ndarray:
 
 
 def edge_signs(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray) -> np.ndarray:
-    """Side of every vertex relative to every line through a contour vertex and another vertex.
+    """Side of every vertex relative to every line through a contour vertex and another vertex, exact.
 
     points: (B, V, 2) float64, rows of contour vertices, then inner vertices, then padding; n_contour, n_inner: (B,).
-    Returns signs (B, V, F + 1, V) int8, F = max n_contour: `signs[:, x, k, v]` is +1 if x lies left of the line from the
-    k-th of `edge_starts` to v, 0 on it. Entries of padding are 0.
+    Returns signs (B, V, F + 1, V) int8, F = max n_contour: `signs[:, x, k, v]` is +1 if x lies left of the line from
+    the k-th of `edge_starts` to v, 0 on it. Entries of padding are 0.
     """
-    n_rows, width = points.shape[:2]
-    n_starts = int(n_contour.max()) + 1
     starts = edge_starts(n_contour)
-    index = np.arange(n_starts)
-    # Padding is NaN: it compares as neither sign, nor as uncertain.
-    used = np.arange(width) < (n_contour + n_inner)[:, None]
-    vertices = np.where(used[..., None], points, np.nan)
-    origins = np.take_along_axis(points, starts[..., None], axis=1)
-    origins[index > n_contour[:, None]] = np.nan
-    signs = np.empty((n_rows, width, n_starts, width), dtype=np.int8)
-    block = max(1, _BLOCK_SIZE // (width * n_starts * width))
+    n_rows, width = points.shape[:2]
+    vertex = np.arange(width)
+    present = vertex < (n_contour + n_inner)[:, None]
+    points = np.where(present[..., None], points, points[:, :1])
+    pair = (starts[..., None] != vertex) & present[:, None]
+    pair &= (np.arange(starts.shape[1]) <= n_contour[:, None])[..., None]
+    signs = np.empty((n_rows, width, starts.shape[1], width), dtype=np.int8)
+    block = max(1, _BLOCK_SIZE // (signs[:1].size))
     for first in range(0, n_rows, block):
         rows = slice(first, first + block)
-        _block_signs(vertices[rows], origins[rows], starts[rows], signs[rows])
+        _block_signs(points[rows], starts[rows], pair[rows], signs[rows])
     return signs
 
 
-def _block_signs(vertices: np.ndarray, origins: np.ndarray, starts: np.ndarray, signs: np.ndarray) -> None:
-    """Fill `signs`, the result of `edge_signs`, for a few contours."""
-    dx = vertices[:, None, :, 0] - origins[:, :, None, 0]
-    dy = vertices[:, None, :, 1] - origins[:, :, None, 1]
-    for offset in (dx, dy):
-        np.put_along_axis(offset, starts[..., None], np.nan, axis=2)
-    size = np.abs(dx) + np.abs(dy)
-    largest = np.fmax.reduce(size, axis=(1, 2))[:, None, None]
-    # (v - a) × (x - a) for all x, a, v
-    determinant = dx[:, None] * dy.transpose(0, 2, 1)[..., None]
-    determinant -= dy[:, None] * dx.transpose(0, 2, 1)[..., None]
-    np.subtract((determinant > 0).view(np.int8), (determinant < 0).view(np.int8), out=signs)
-    doubtful = np.abs(determinant, out=determinant) <= (_ERROR_BOUND * largest * size)[:, None]
+def _block_signs(points: np.ndarray, starts: np.ndarray, pair: np.ndarray, signs: np.ndarray) -> None:
+    """Fill `signs`, the result of `edge_signs`, for a few contours; pair (B, F + 1, V): two different vertices."""
+    offset = points[:, None] - points[:, :, None]
+    offset /= np.abs(offset).max(axis=(1, 2, 3), keepdims=True)
+    to_vertex = np.ascontiguousarray(offset.transpose(0, 1, 3, 2)[:, :, ::-1], dtype=np.float32)
+    to_start = np.take_along_axis(offset, starts[:, None, :, None], axis=2) * [1, -1]
+    bound = _ERROR_BOUND * np.abs(to_start).sum(axis=-1, keepdims=True)
+    to_start = (to_start / np.where(bound > 0, bound, 1)).astype(np.float32)
+    # (start - x) × (vertex - x), in units of the error bound
+    determinant = to_start @ to_vertex
+    np.subtract((determinant > 1).view(np.int8), (determinant < -1).view(np.int8), out=signs)
+    distinct = pair[:, None] & pair.transpose(0, 2, 1)[..., None]
     vertex = np.arange(signs.shape[1])
-    doubtful[:, vertex, :, vertex] = False
-    if doubtful.any():
-        row, x, k, v = np.nonzero(doubtful)
-        signs[row, x, k, v] = orientation(origins[row, k], vertices[row, v], vertices[row, x])
+    distinct[:, vertex, :, vertex] = False
+    signs *= distinct.view(np.int8)
+    doubtful = np.flatnonzero(distinct & (signs == 0))
+    if len(doubtful):
+        row, x, k, v = np.unravel_index(doubtful, signs.shape)
+        signs[row, x, k, v] = orientation(points[row, starts[row, k]], points[row, v], points[row, x])
 
 
 def facet_sides(signs: np.ndarray, starts: np.ndarray) -> np.ndarray:
@@ -77,8 +77,8 @@ def facet_sides(signs: np.ndarray, starts: np.ndarray) -> np.ndarray:
 def possible_elements(signs: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray) -> np.ndarray:
     """Which entries of the connection table can be elements: (B, F, V) bool.
 
-    Facet f and vertex v form an element if the triangle has positive area, its closure holds no vertex but its own three,
-    and its two new edges cross no facet.
+    Facet f and vertex v form an element if the triangle has positive area, its closure holds no vertex but its own
+    three, and its two new edges cross no facet.
     """
     starts = edge_starts(n_contour)
     sides = facet_sides(signs, starts)
