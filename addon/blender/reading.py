@@ -16,6 +16,8 @@ READABLE = frozenset({"CURVE", "FONT"})
 # Modifiers that Blender always applies to control points, whether or not "Apply on Spline" is set.
 _ON_SPLINE = frozenset({"HOOK", "SOFT_BODY", "MESH_DEFORM"})
 
+_NOTHING = "There is no outline in it. Draw or type something first."
+
 
 @dataclass(frozen=True)
 class Outline:
@@ -38,6 +40,8 @@ def read_outline(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Outli
     """
     evaluated = obj.evaluated_get(depsgraph)
     with _wire(evaluated, depsgraph) as mesh:
+        if mesh is None:  # what Blender makes of an empty text
+            raise ContourError("too-few-points", _NOTHING)
         points = np.empty((len(mesh.vertices), 3), dtype=np.float32)
         edges = np.empty((len(mesh.edges), 2), dtype=np.int32)
         face_edges = np.empty(len(mesh.loops), dtype=np.int32)
@@ -63,7 +67,7 @@ def _chains(n_points: int, edges: np.ndarray, face_edges: np.ndarray) -> list[tu
 def _closed_chains(points: np.ndarray, chains: list[tuple[np.ndarray, bool]]) -> list[np.ndarray]:
     """Every chain closed, or a ContourError that counts splines as Blender lists them, from 1."""
     if not chains:
-        raise ContourError("too-few-points", "There is no outline in it. Draw or type something first.")
+        raise ContourError("too-few-points", _NOTHING)
     tolerance = 1e-6 * float(np.ptp(points, axis=0).max())
     closed_chains = []
     for number, (chain, closed) in enumerate(chains, start=1):
@@ -86,7 +90,7 @@ def _closed_chains(points: np.ndarray, chains: list[tuple[np.ndarray, bool]]) ->
 
 
 @contextmanager
-def _wire(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Iterator[bpy.types.Mesh]:
+def _wire(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Iterator[bpy.types.Mesh | None]:
     """A temporary mesh of the outline's edges; nothing of it is left afterwards."""
     if _has_mesh_modifiers(evaluated):
         # These work on what Blender tessellates, fill included; the borders of the faces are the outline then.

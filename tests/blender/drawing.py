@@ -45,6 +45,7 @@ def star(points=7, outer=1.0, inner=0.45):
 
 def select(*objects):
     """Only these are selected, the first is active."""
+    bpy.context.view_layer.update()
     for obj in bpy.context.view_layer.objects:
         obj.select_set(obj in objects)
     bpy.context.view_layer.objects.active = objects[0]
@@ -82,6 +83,5 @@ def counts():
 
 def _link(obj):
     bpy.context.scene.collection.objects.link(obj)
-    bpy.context.view_layer.update()
     select(obj)
     return obj
