@@ -47,8 +47,12 @@ def load(split: str, largest: int | None = None) -> Examples:
     arrays = {name: np.concatenate([shard[name] for shard in shards]) for name in shards[0].files if name != "kind"}
     for name, array in arrays.items():
         arrays[name] = array.astype(np.int64 if name.startswith("n_") else np.float64)
-    placed = folder / f"{split}_placed.npy"
-    return Examples(**arrays, placed=np.load(placed)[: len(arrays["l_s"])] if placed.exists() else None)
+    file, placed = folder / f"{split}_placed.npy", None
+    if file.exists():
+        placed = np.full(arrays["inner"].shape, np.nan)
+        found = np.load(file)[: len(placed)]
+        placed[: len(found)] = found
+    return Examples(**arrays, placed=placed)
 
 
 def reflect(examples: Examples, chosen: np.ndarray) -> Examples:

@@ -52,8 +52,9 @@ def score_grid(
     scores = np.full(grid.shape[:2], np.inf)
     block = 32
     blocks = -(-n_grid // block) * block
-    for size in np.unique(blocks[n_inner > 0]):
-        chosen = np.flatnonzero((blocks == size) & (n_inner > 0))
+    asked = (n_inner > 0) & (n_grid > 0)
+    for size in np.unique(blocks[asked]):
+        chosen = np.flatnonzero((blocks == size) & asked)
         size = min(size, grid.shape[1])
         for rows, n, _ in _groups(n_contour[chosen], np.zeros(len(chosen), int), size):
             rows = chosen[rows]

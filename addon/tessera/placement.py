@@ -32,6 +32,16 @@ def place_inner_vertices(
     contour: (B, N, 2) float64; n_contour, n_inner: (B,) int64; l_s: (B,). Returns inner vertices (B, M, 2) and how many
     each contour has, (B,): fewer than asked for where the cavity is too thin to hold them apart.
     """
+    inner, count = place_by_scores(contour, n_contour, n_inner, l_s)
+    for _ in range(PASSES):
+        inner = _move(contour, n_contour, inner, count)
+    return inner, count
+
+
+def place_by_scores(
+    contour: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, l_s: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The first pass of `place_inner_vertices` alone, from the scores."""
     inner = np.zeros((len(contour), int(n_inner.max(initial=0)), 2))
     count = np.zeros_like(n_inner)
     for resolution in (_GRID, _FINE_GRID):
@@ -39,9 +49,8 @@ def place_inner_vertices(
         if len(rows):
             placed, found = _decode(contour[rows], n_contour[rows], n_inner[rows], l_s[rows], resolution)
             better = found > count[rows]
-            inner[rows[better]], count[rows[better]] = placed[better], found[better]
-    for _ in range(PASSES):
-        inner = _move(contour, n_contour, inner, count)
+            inner[rows[better], : placed.shape[1]] = placed[better]
+            count[rows[better]] = found[better]
     return inner, count
 
 

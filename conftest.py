@@ -1,0 +1,9 @@
+"""The root's ``__init__.py`` is the extension's entry, which imports Blender: to pytest the root is a plain folder."""
+
+from pathlib import Path
+
+import pytest
+
+
+def pytest_collect_directory(path: Path, parent: pytest.Collector) -> pytest.Collector | None:
+    return pytest.Dir.from_parent(parent, path=path) if path == Path(__file__).parent else None

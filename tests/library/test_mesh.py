@@ -1,0 +1,123 @@
+"""The public interface: any simple polygons at any target edge length, and a clear error for anything else."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import tessera
+from tests.library.polygons import LETTER_E, circle, letter_s, placed, placements, simple_polygons, star
+from tests.validity import check_mesh, polygon_area
+
+SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
+
+
+def target(polygon: np.ndarray, triangles: float) -> float:
+    """The edge length of about so many equilateral triangles, but no shorter than the outline is fine."""
+    outline = np.linalg.norm(polygon - np.roll(polygon, 1, axis=0), axis=1).sum()
+    return max(np.sqrt(abs(polygon_area(polygon)) / triangles * 4 / np.sqrt(3)), outline / 300)
+
+
+@settings(deadline=None, max_examples=40)
+@given(simple_polygons, placements, st.sampled_from([2, 30, 300]), st.sampled_from(["resample", "keep"]))
+def test_any_simple_polygon_is_meshed(polygon, placement, triangles, boundary):
+    polygon = placed(polygon, placement)
+    mesh = tessera.mesh([polygon], target(polygon, triangles), boundary=boundary)
+    check_mesh(mesh.vertices, mesh.triangles, [polygon], keep=boundary == "keep")
+
+
+@pytest.mark.parametrize("edge_length", [0.5, 0.2, 0.05])
+@pytest.mark.parametrize("polygon", [SQUARE, circle(100), LETTER_E / 7, letter_s()], ids=["square", "circle", "E", "S"])
+def test_meshes_are_even(polygon, edge_length):
+    mesh = tessera.mesh([polygon], edge_length)
+    check_mesh(mesh.vertices, mesh.triangles, [polygon], keep=False)
+    assert mesh.report.q_mean > 0.85
+    if edge_length == 0.05:
+        assert mesh.report.q_worst > 0.4 and mesh.report.q_mean > 0.93
+        assert 0.7 < mesh.report.edge_lengths[1] / edge_length < 1.3
+
+
+def test_winding_order_and_repeats_do_not_matter():
+    once = tessera.mesh([SQUARE], 0.2)
+    for loop in (SQUARE[::-1], np.repeat(SQUARE, 2, axis=0), np.vstack([SQUARE, SQUARE[:1]])):
+        again = tessera.mesh([loop], 0.2)
+        assert again.report.n_triangles == pytest.approx(once.report.n_triangles, rel=0.1)
+        check_mesh(again.vertices, again.triangles, [SQUARE], keep=False)
+
+
+def test_several_outer_contours_are_one_mesh():
+    loops = [SQUARE, SQUARE[::-1] + [3, 0], circle(40) + [0, 5]]
+    mesh = tessera.mesh(loops, 0.2)
+    check_mesh(mesh.vertices, mesh.triangles, loops, keep=False)
+
+
+def test_a_kept_boundary_of_long_edges_is_graded():
+    mesh = tessera.mesh([SQUARE * [8, 1]], 0.1, boundary="keep")
+    check_mesh(mesh.vertices, mesh.triangles, [SQUARE * [8, 1]])
+
+
+def test_refinement_reaches_the_inside_of_a_coarse_kept_boundary():
+    coarse = circle(24)
+    mesh = tessera.mesh([coarse], 0.05, boundary="keep")
+    check_mesh(mesh.vertices, mesh.triangles, [coarse])
+    inside = np.linalg.norm(mesh.vertices[mesh.triangles].mean(axis=1), axis=1) < 0.3
+    corners = mesh.vertices[mesh.triangles[inside]]
+    assert np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=-1).mean() < 0.09
+
+
+def test_a_batch_is_each_domain_alone():
+    domains = [[SQUARE], [star(7)], [np.array([[0, 0], [1, 1], [2, 2]])], [circle(60), circle(60) + [4, 0]], [LETTER_E / 5]]
+    together = tessera.mesh_many(domains, 0.15)
+    assert isinstance(together[2], tessera.ContourError) and together[2].reason == "zero-area"
+    for domain, mesh in zip(domains, together, strict=True):
+        if isinstance(mesh, tessera.Mesh):
+            alone = tessera.mesh(domain, 0.15)
+            np.testing.assert_array_equal(alone.triangles, mesh.triangles)
+            np.testing.assert_allclose(alone.vertices, mesh.vertices, atol=1e-5)
+
+
+def test_report():
+    report = tessera.mesh([circle(80)], 0.2).report
+    shortest, mean, longest = report.edge_lengths
+    assert 0 < report.q_worst <= report.q_mean <= 1 and shortest <= mean <= longest
+    assert report.n_triangles == 2 * report.n_vertices - 2 - round(2 * np.pi / 0.2)
+    assert {"division", "NN1", "NN2", "NN3", "triangulation", "relaxation"} <= set(report.seconds)
+
+
+BOW_TIE = [(0, 0), (2, 2), (2, 0), (0, 2)]
+
+
+@pytest.mark.parametrize(
+    ("reason", "loops", "edge_length"),
+    [
+        ("not-finite", [[(0, 0), (1, 0), (np.nan, 1)]], 0.1),
+        ("not-finite", [[(0, 0), (1, 0), (np.inf, 1)]], 0.1),
+        ("too-few-points", [[(0, 0), (1, 0), (1, 0), (0, 0)]], 0.1),
+        ("too-few-points", [[]], 0.1),
+        ("too-few-points", [], 0.1),
+        ("zero-area", [[(0, 0), (1, 0), (2, 0)]], 0.1),
+        ("self-intersection", [BOW_TIE], 0.1),
+        ("crossing", [SQUARE, SQUARE + 0.5], 0.1),
+        ("hole", [SQUARE, SQUARE / 2 + 0.25], 0.1),
+        ("edge-length", [SQUARE], 0.0),
+        ("edge-length", [SQUARE], -1.0),
+        ("edge-length", [SQUARE], np.nan),
+        ("too-many-triangles", [SQUARE], 1e-4),
+    ],
+)
+def test_bad_input(reason, loops, edge_length):
+    with pytest.raises(tessera.ContourError) as error:
+        tessera.mesh(loops, edge_length)
+    assert error.value.reason == reason
+    assert str(error.value).endswith((".", "more.", "points.")) and len(str(error.value)) > 40
+
+
+def test_an_error_says_where():
+    with pytest.raises(tessera.ContourError) as error:
+        tessera.mesh([BOW_TIE], 0.1)
+    np.testing.assert_allclose(error.value.place, (1, 1))
+
+
+def test_no_such_boundary():
+    with pytest.raises(ValueError, match="resample"):
+        tessera.mesh([SQUARE], 0.1, boundary="both")

@@ -1,0 +1,90 @@
+"""Stars, and their relaxation: valid, better, boundary untouched."""
+
+import numpy as np
+import pytest
+
+from tessera.quality import element_quality
+from tessera.refinement import inner_edges, off_boundary, refine
+from tessera.relaxation import relax
+from tessera.stars import find_stars, independent_sets
+from tessera.stopwatch import Stopwatch
+from tests.validity import check_mesh
+
+
+def disturbed_grid(n: int, seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Vertices, triangles and outline of a square grid, its inner vertices moved about."""
+    x, y = np.meshgrid(np.arange(n + 1.0), np.arange(n + 1.0))
+    vertices = np.stack([x.ravel(), y.ravel()], axis=1)
+    first = (np.arange(n) + (n + 1) * np.arange(n)[:, None]).ravel()
+    lower = np.stack([first, first + 1, first + n + 2], axis=1)
+    upper = np.stack([first, first + n + 2, first + n + 1], axis=1)
+    triangles = np.concatenate([lower, upper])
+    free = off_boundary(triangles, len(vertices))
+    vertices[free] += np.random.default_rng(seed).uniform(-0.25, 0.25, (free.sum(), 2))
+    side = np.arange(n)
+    outline = np.concatenate([side, (n + 1) * side + n, (n + 1) * n + n - side, (n + 1) * (n - side)])
+    return vertices, triangles, vertices[outline]
+
+
+def test_stars_are_the_rings_of_neighbours():
+    vertices, triangles, _ = disturbed_grid(6, 0)
+    free = off_boundary(triangles, len(vertices))
+    stars = find_stars(triangles, free, 16)
+    assert sorted(stars.centre) == sorted(np.flatnonzero(free))
+    for centre, ring, n in zip(stars.centre, stars.ring, stars.n_ring, strict=True):
+        around = triangles[(triangles == centre).any(axis=1)]
+        assert set(ring[:n]) == set(around.ravel()) - {centre} and len(around) == n
+        pairs = {frozenset(t) - {centre} for t in map(frozenset, around)}
+        assert pairs == {frozenset((ring[k], ring[(k + 1) % n])) for k in range(n)}
+
+
+def test_large_stars_are_left_out():
+    triangles = np.stack([np.full(20, 20), np.arange(20), (np.arange(20) + 1) % 20], axis=1)
+    free = off_boundary(triangles, 21)
+    assert free.sum() == 1
+    assert len(find_stars(triangles, free, 16).centre) == 0
+    assert len(find_stars(triangles, free, 20).centre) == 1
+
+
+def test_sets_have_no_neighbours_and_hold_every_star():
+    vertices, triangles, _ = disturbed_grid(12, 1)
+    stars = find_stars(triangles, off_boundary(triangles, len(vertices)), 16)
+    sets = independent_sets(stars, len(vertices))
+    assert sorted(np.concatenate(sets)) == list(range(len(stars.centre)))
+    edges = {frozenset(edge) for edge in inner_edges(triangles)[0].tolist()}
+    for rows in sets:
+        centres = stars.centre[rows].tolist()
+        assert not any(frozenset((a, b)) in edges for i, a in enumerate(centres) for b in centres[:i])
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_relaxation_improves_a_disturbed_mesh(seed):
+    vertices, triangles, outline = disturbed_grid(10, seed)
+    free = off_boundary(triangles, len(vertices))
+    relaxed = relax(vertices, triangles, free)
+    check_mesh(relaxed, triangles, [outline])
+    np.testing.assert_array_equal(relaxed[~free], vertices[~free])
+    before, after = element_quality(vertices, triangles), element_quality(relaxed, triangles)
+    assert after.mean() > before.mean() + 0.02 and after.min() > before.min() + 0.1
+
+
+def test_refinement_reaches_the_target_and_keeps_the_boundary():
+    outline = np.array([[0.0, 0], [4, 0], [4, 4], [0, 4]])
+    vertices, triangles = np.vstack([outline, [[2, 2]]]), np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
+
+    def sizing(points):
+        return np.full(len(points), 0.9)
+
+    vertices, triangles, parent, _ = refine(vertices, triangles, sizing, Stopwatch())
+    check_mesh(vertices, triangles, [outline])
+    edges, inner = inner_edges(triangles)
+    lengths = np.linalg.norm(vertices[edges[:, 0]] - vertices[edges[:, 1]], axis=1)
+    assert lengths[inner].max() < 1.5 * 0.9
+    assert set(parent) == {0, 1, 2, 3}
+
+
+def test_no_refinement_where_none_is_needed():
+    vertices, triangles, _ = disturbed_grid(4, 3)
+    again = refine(vertices, triangles, lambda points: np.full(len(points), 2.0), Stopwatch())
+    np.testing.assert_array_equal(again[0], vertices)
+    np.testing.assert_array_equal(again[1], triangles)

@@ -1,0 +1,89 @@
+"""The scheme on single contours and in batches: valid, faithful to the contour, the same in every batch."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import tessera
+from tessera.scheme import join_vertices, mesh_contours
+from tessera.stopwatch import Stopwatch
+from tests.validity import check_many, check_mesh
+
+
+def sector_contours(seed: int, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Random star-shaped contours of 3 to 16 edges, padded (count, 16, 2), and their numbers of edges."""
+    rng = np.random.default_rng(seed)
+    n_contour = rng.integers(3, 17, count)
+    points = np.zeros((count, 16, 2))
+    for row, n in enumerate(n_contour):
+        angle = 2 * np.pi * (np.arange(n) + rng.uniform(0, 0.7, n)) / n
+        points[row, :n] = rng.uniform(0.3, 1, (n, 1)) * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    return points, n_contour
+
+
+def mesh(points, n_contour, l_s):
+    return mesh_contours(points, n_contour, l_s, Stopwatch())
+
+
+def by_contour(meshes, row):
+    return meshes.triangles[meshes.owner == row], meshes.inner[row, : meshes.n_inner[row]]
+
+
+@settings(deadline=None, max_examples=20)
+@given(st.integers(0, 2**32), st.floats(0.15, 2))
+def test_every_contour_gets_a_valid_mesh(seed, l_s):
+    points, n_contour = sector_contours(seed, 40)
+    meshes = mesh(points, n_contour, np.full(40, l_s))
+    vertices = join_vertices(points, n_contour, meshes.inner, meshes.n_inner)
+    check_many(vertices, n_contour, meshes.n_inner, meshes.triangles, meshes.owner)
+
+
+def test_a_contour_has_the_same_mesh_in_any_batch():
+    points, n_contour = sector_contours(3, 300)
+    l_s = np.random.default_rng(4).uniform(0.3, 1, 300)
+    whole = mesh(points, n_contour, l_s)
+    order = np.random.default_rng(5).permutation(300)
+    shuffled = mesh(points[order], n_contour[order], l_s[order])
+    for row in range(300):
+        here, there = by_contour(whole, row), by_contour(shuffled, np.flatnonzero(order == row)[0])
+        np.testing.assert_array_equal(here[0], there[0])
+        np.testing.assert_allclose(here[1], there[1], atol=1e-5)
+    for row in range(0, 300, 10):
+        here, there = by_contour(whole, row), by_contour(mesh(*(a[[row]] for a in (points, n_contour, l_s))), 0)
+        np.testing.assert_array_equal(here[0], there[0])
+        np.testing.assert_allclose(here[1], there[1], atol=1e-5)
+
+
+def test_a_shorter_target_gives_more_vertices():
+    points, n_contour = sector_contours(6, 100)
+    counts = [mesh(points, n_contour, np.full(100, l_s)).n_inner.mean() for l_s in (1.0, 0.6, 0.4)]
+    assert counts[0] < counts[1] < counts[2]
+
+
+def test_mesh_contour_keeps_the_contour():
+    points = 100 + 30 * np.array([[0, 0], [2, 0], [3, 1], [2, 2], [1, 1.5], [0, 2]])
+    result = tessera.mesh_contour(points, 20)
+    check_mesh(result.vertices, result.triangles, [points])
+    np.testing.assert_array_equal(result.vertices[:6], points)
+    assert result.report.n_triangles == len(result.triangles) and result.report.q_worst > 0.3
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1, 1e6])
+def test_mesh_contour_at_any_scale(scale):
+    points = scale * np.array([[0, 0], [4, 0], [5, 3], [2, 5], [-1, 3]])
+    result = tessera.mesh_contour(points, scale)
+    check_mesh(result.vertices, result.triangles, [points])
+    assert result.report.n_vertices > 8
+
+
+def test_mesh_contour_says_when_the_target_is_out_of_its_reach():
+    result = tessera.mesh_contour([(0, 0), (1, 0), (1, 1), (0, 1)], 0.01)
+    assert "inner vertices" in result.report.warnings[0]
+
+
+def test_mesh_contour_of_too_many_edges():
+    angle = np.arange(17) / 17 * 2 * np.pi
+    with pytest.raises(tessera.ContourError) as error:
+        tessera.mesh_contour(np.stack([np.cos(angle), np.sin(angle)], axis=1), 0.3)
+    assert error.value.reason == "too-many-edges"

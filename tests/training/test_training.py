@@ -1,0 +1,175 @@
+"""Data, tables and networks of the training: what each stage promises."""
+
+import numpy as np
+import pytest
+import torch
+
+from tests.validity import check_many
+from training import configuration, contours, generate, meshing, reference, tables
+from training.data import elements_of, even_lengths, inside, is_clear, reflect, sub_contour
+from training.export import INPUTS, sample
+from training.networks import ROLES
+
+CONFIG = configuration.read()["data"]
+
+
+@pytest.fixture(scope="module")
+def shard():
+    return generate.make_shard((99, 0), 60, CONFIG, list(contours.KINDS))
+
+
+def examples(shard):
+    from training.data import Examples
+
+    arrays = {name: array.astype(np.int64 if name.startswith("n_") else np.float64) for name, array in shard.items()}
+    arrays.pop("kind")
+    return Examples(**arrays)
+
+
+@pytest.mark.parametrize("kind", contours.KINDS)
+def test_contours_are_transformed_and_counter_clockwise(kind):
+    rng = np.random.default_rng(1)
+    sizes = set()
+    for _ in range(100):
+        points, l_s = contours.draw(rng, kind)
+        sizes.add(len(points))
+        assert 3 <= len(points) <= 16 and l_s > 0 and meshing.area2(points, 0, 1, 2) < 10
+        x, y = points.T
+        assert np.dot(x, np.roll(y, -1)) > np.dot(y, np.roll(x, -1))
+        np.testing.assert_allclose(points.mean(axis=0), 0, atol=1e-12)
+    assert len(sizes) >= 6
+
+
+def test_shards_are_reproducible(shard):
+    again = generate.make_shard((99, 0), 60, CONFIG, list(contours.KINDS))
+    for name, array in shard.items():
+        np.testing.assert_array_equal(array, again[name])
+
+
+def test_a_killed_run_leaves_no_half_shard(tmp_path, monkeypatch):
+    config = CONFIG | {"shard": 3}
+
+    def killed(*_, **__):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(generate.np, "savez", killed)
+        with pytest.raises(KeyboardInterrupt):
+            generate.work((tmp_path / "00000.npz", (1, 0), config))
+    assert not list(tmp_path.glob("*.npz"))
+    generate.work((tmp_path / "00000.npz", (1, 0), config))
+    assert len(np.load(tmp_path / "00000.npz")["l_s"]) == 3
+
+
+def test_the_teacher_is_better_than_the_reference(shard):
+    assert (shard["teacher"][:, 0] >= shard["reference"][:, 0] - 0.05).all()
+    assert shard["teacher"][:, 0].mean() > shard["reference"][:, 0].mean() + 0.02
+
+
+def test_delaunay_is_valid_and_delaunay(shard):
+    data = examples(shard)
+    out, ok = np.empty((len(data), 80, 3), np.int64), np.zeros(len(data), bool)
+    elements_of(data.contour, data.inner, data.n_contour, data.n_inner, out, ok)
+    assert ok.all()
+    for row in range(len(data)):
+        n, m = data.n_contour[row], data.n_inner[row]
+        points = np.concatenate([data.contour[row, :n], data.inner[row, :m]])
+        triangles = out[row][out[row, :, 0] >= 0]
+        triangles = np.where(triangles >= 16, triangles - 16 + n, triangles)
+        check_many(points[None], np.array([n]), np.array([m]), triangles, np.zeros(len(triangles), int))
+        opposite = np.full((n + m, n + m), -1)
+        for a, b, c in triangles:
+            meshing.add(opposite, a, b, c)
+        for u, v in np.argwhere(opposite >= 0):
+            w, x = opposite[u, v], opposite[v, u]
+            assert x < 0 or meshing.in_circle(points, u, v, w, x) <= 1e-9
+
+
+def test_reference_keeps_the_contour():
+    reference.start()
+    points = contours.transformed_sector(np.random.default_rng(2), 9)
+    vertices, triangles = reference.mesh(points, 0.4)
+    np.testing.assert_allclose(vertices[:9], points, atol=1e-12)
+    check_many(vertices[None], np.array([9]), np.array([len(vertices) - 9]), triangles, np.zeros(len(triangles), int))
+
+
+def test_table_of_a_square():
+    points = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1], [0.5, 0.5]])
+    (table,) = tables.connection_tables(points[None], np.array([4]), np.array([1]))
+    quality = 4 * 0.25 / (np.sqrt(3) * (1 + 0.5 + 0.5) / 3)
+    for facet in range(4):
+        assert table[facet, 4] == pytest.approx((quality, quality))
+        # A corner is not possible: the middle lies on the diagonal.
+        np.testing.assert_array_equal(table[facet, :4], 0)
+
+
+def test_tables_hold_what_forcing_an_element_gives():
+    """Against brute force: every triangulation of a few points that holds the element and is Delaunay elsewhere."""
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        points = np.concatenate([contours.transformed_sector(rng, 6), rng.uniform(-0.15, 0.15, (2, 2))])
+        if not all(is_clear(points, 6, 8, v, 0.05) for v in (6, 7)):
+            continue
+        (table,) = tables.connection_tables(points[None], np.array([6]), np.array([2]))
+        best = table[..., 0].max()
+        opposite = np.empty((8, 8), np.int64)
+        assert meshing.delaunay(points, 6, 8, opposite)
+        worst, mean = meshing.qualities(points, opposite, 8)
+        for facet in range(6):
+            own = opposite[facet, (facet + 1) % 6]
+            assert table[facet, own] == pytest.approx((worst, mean))
+            for v in np.flatnonzero(table[facet, :, 0]):
+                assert table[facet, v, 0] <= meshing.quality(points, facet, (facet + 1) % 6, v) + 1e-12
+        assert best >= worst
+
+
+def test_sub_contours_are_simple_and_keep_all_vertices_inside(shard):
+    data, rng = examples(shard), np.random.default_rng(4)
+    for row in np.flatnonzero(data.n_inner > 2):
+        n, m = int(data.n_contour[row]), int(data.n_inner[row])
+        points, count = sub_contour(rng, np.concatenate([data.contour[row, :n], data.inner[row, :m]]), n)
+        assert inside(points[None, count:], points[None, :count], np.array([count])).all()
+        opposite = np.empty((len(points), len(points)), np.int64)
+        assert meshing.delaunay(points, count, len(points), opposite)
+
+
+def test_reflection_keeps_contours_counter_clockwise(shard):
+    data = examples(shard)
+    mirrored = reflect(data, np.ones(len(data), bool))
+    lengths = [even_lengths(d.contour, d.n_contour, d.n_inner) for d in (data, mirrored)]
+    np.testing.assert_allclose(*lengths)
+    np.testing.assert_allclose(mirrored.contour[:, 0], data.contour[:, 0] * [1, -1])
+
+
+@pytest.mark.parametrize("role", ["nn2_moves", "nn3"])
+def test_the_order_of_inner_vertices_does_not_matter(role):
+    torch.manual_seed(0)
+    net, inputs = ROLES[role](), sample(np.random.default_rng(5), 6, 12, 7)
+    inputs["n_inner"][:] = 7
+    order = torch.tensor([3, 1, 6, 0, 2, 5, 4])
+    given = {name: inputs[name] for name in INPUTS[role]}
+    if role == "nn3":
+        row, vertex = torch.arange(6).repeat_interleave(7), torch.arange(7).repeat(6)
+        given["entries"] = torch.stack([row, torch.zeros_like(row), 12 + vertex], 1)
+    with torch.no_grad():
+        here = net(**given)
+        there = net(**(given | {"inner": inputs["inner"][:, order]}))
+    here = here.reshape(6, 7, 2) if role == "nn3" else here
+    there = there.reshape(6, 7, 2) if role == "nn3" else there
+    torch.testing.assert_close(here[:, order], there, atol=1e-5, rtol=1e-4)
+
+
+@pytest.mark.parametrize("role", list(ROLES))
+def test_padding_does_not_matter(role):
+    torch.manual_seed(0)
+    net, inputs = ROLES[role](), sample(np.random.default_rng(6), 6, 12, 7)
+    inputs["entries"][:, 2] = 1 + inputs["entries"][:, 2] % 2
+    padded = dict(inputs)
+    padded["contour"] = torch.nn.functional.pad(inputs["contour"], (0, 0, 0, 4), value=3.0)
+    padded["inner"] = torch.nn.functional.pad(inputs["inner"], (0, 0, 0, 5), value=-2.0)
+    with torch.no_grad():
+        here, there = (net(**{name: d[name] for name in INPUTS[role]}) for d in (inputs, padded))
+    if role == "nn2_moves":
+        real = torch.arange(7) < inputs["n_inner"][:, None]
+        here, there = here[real], there[:, :7][real]
+    torch.testing.assert_close(here, there, atol=1e-4, rtol=1e-4)
