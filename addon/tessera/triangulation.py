@@ -127,7 +127,7 @@ def _chunks(contours: Contours) -> list[np.ndarray]:
     """Row numbers, in pieces whose sign tensor is not too large."""
     n_rows, width = contours.slots.shape
     each = width**2 * (int(contours.n_contour.max(initial=0)) + 1)
-    return np.array_split(np.arange(n_rows), 1 + n_rows * each // _CHUNK_SIZE)
+    return np.array_split(np.arange(n_rows), min(n_rows, 1 + n_rows * each // _CHUNK_SIZE))
 
 
 def _connect_facets(contours: Contours, tables: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, Contours]:
