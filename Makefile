@@ -51,7 +51,7 @@ wheels: $(VENV)/.runtime
 	$(PY) scripts/fetch_wheels.py
 
 extension: wheels
-	$(PY) scripts/build_extension.py --all-platforms
+	$(PY) scripts/build_extension.py
 
 clean:
 	rm -rf build wheels

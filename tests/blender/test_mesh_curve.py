@@ -120,7 +120,9 @@ TRANSFORMS = {
     "rotated": Euler((0.3, -1.1, 2.0)).to_matrix().to_4x4(),
     "negative": Matrix.Diagonal((-1, 1, 1, 1)),
     "mirrored thrice": Matrix.Diagonal((-2, -2, -2, 1)),
-    "not uniform": Matrix.Translation((1, 2, 3)) @ Euler((1, 0.5, -2)).to_matrix().to_4x4() @ Matrix.Diagonal((4, 0.5, 3, 1)),
+    "not uniform": Matrix.Translation((1, 2, 3))
+    @ Euler((1, 0.5, -2)).to_matrix().to_4x4()
+    @ Matrix.Diagonal((4, 0.5, 3, 1)),
     "tiny": Matrix.Diagonal((1e-4, 1e-4, 1e-4, 1)),
     "huge": Matrix.Diagonal((1e4, 1e4, 1e4, 1)),
 }

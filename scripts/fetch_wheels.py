@@ -1,0 +1,50 @@
+"""Fetch the onnxruntime wheels that the extension ships, those of requirements/wheels.lock, into wheels/.
+
+The lock holds a line for each: its SHA-256 and its file name, as sha256sum writes them. What is there already and right
+is not fetched again; what is wrong is an error.
+"""
+
+import hashlib
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+LOCK = ROOT / "requirements" / "wheels.lock"
+WHEELS = ROOT / "wheels"
+
+
+def main() -> int:
+    """Fetch and verify every wheel of the lock. Exit status 1 where a hash differs."""
+    WHEELS.mkdir(exist_ok=True)
+    wrong = []
+    for digest, name in locked():
+        path = WHEELS / name
+        if not path.exists():
+            print(f"fetching {name}", flush=True)
+            fetch(name)
+        if hashlib.sha256(path.read_bytes()).hexdigest() != digest:
+            wrong.append(name)
+    for name in wrong:
+        print(f"{WHEELS / name} is not the file of {LOCK.name}: delete it, and run this again", file=sys.stderr)
+    return 1 if wrong else 0
+
+
+def locked() -> list[tuple[str, str]]:
+    """(SHA-256, file name) for each wheel of the lock."""
+    return [(digest, name) for digest, name in (line.split() for line in LOCK.read_text().splitlines())]
+
+
+def fetch(name: str) -> None:
+    """Let pip download the wheel of exactly this name."""
+    package, version, python, abi, platforms = name.removesuffix(".whl").split("-")
+    command = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps"]
+    command += ["--only-binary=:all:", "--dest", str(WHEELS), "--implementation", "cp"]
+    command += ["--python-version", python.removeprefix("cp"), "--abi", abi]
+    for platform in platforms.split("."):
+        command += ["--platform", platform]
+    subprocess.run([*command, f"{package}=={version}"], check=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
