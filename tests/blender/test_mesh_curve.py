@@ -5,10 +5,10 @@ import math
 import bpy
 import numpy as np
 import pytest
-from tests.blender.drawing import SQUARE, circle, counts, poly_curve, select, star, text, triangles, vertices, world
 from mathutils import Euler, Matrix
 
 from addon.tessera.quality import element_quality
+from tests.blender.drawing import SQUARE, circle, counts, poly_curve, select, star, text, triangles, vertices, world
 
 
 def run(**settings):
