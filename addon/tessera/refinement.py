@@ -14,10 +14,13 @@ import numpy as np
 
 from .assembly import mean_edge_lengths, mesh_cells
 from .mesh import unique_edges
+from .quality import element_quality
 from .relaxation import relax
 from .stopwatch import Stopwatch
 
 MOST_SEGMENTS = 5
+# An element flatter than this keeps its edges: its sub-contour could cross itself by the rounding of inserted vertices.
+_SLIVER = 1e-6
 _MOST_ROUNDS = 20  # five to the power of it is more than any ratio of lengths
 
 Sizing = Callable[[np.ndarray], np.ndarray]
@@ -38,7 +41,7 @@ def refine(
         ends = vertices[edges]
         length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         segments = np.rint(length / sizing(ends.mean(axis=1))).astype(np.int64)
-        segments = np.where(inner, np.clip(segments, 1, MOST_SEGMENTS), 1)
+        segments = np.where(inner & ~_beside_slivers(vertices, triangles, edges), np.clip(segments, 1, MOST_SEGMENTS), 1)
         if segments.max(initial=1) == 1:
             break
         points, cells = _sub_contours(vertices, triangles, edges, segments)
@@ -67,6 +70,14 @@ def off_boundary(triangles: np.ndarray, n_vertices: int) -> np.ndarray:
     free = np.ones(n_vertices, dtype=bool)
     free[edges[~inner]] = False
     return free
+
+
+def _beside_slivers(vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """(e,) which edges belong to an element that is too flat to be split."""
+    flat = triangles[element_quality(vertices, triangles) < _SLIVER]
+    sides = np.sort(flat[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    stride = int(edges.max()) + 1
+    return np.isin(edges[:, 0] * stride + edges[:, 1], sides[:, 0] * stride + sides[:, 1])
 
 
 def _sub_contours(

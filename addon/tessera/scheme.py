@@ -11,6 +11,7 @@ from .placement import MOST_INNER, place_inner_vertices
 from .stopwatch import Stopwatch
 from .transform import superimpose
 from .triangulation import triangulate
+from .visibility import edge_signs, possible_elements
 
 LARGEST_CONTOUR = 16
 
@@ -47,13 +48,12 @@ def mesh_contours(contours: np.ndarray, n_contour: np.ndarray, edge_length: np.n
     return ContourMeshes(inner, n_inner, wanted, meshes.triangles, meshes.owner, meshes.fallbacks)
 
 
-def connect(
-    points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, possible: np.ndarray, watch: Stopwatch
-) -> np.ndarray:
+def connect(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, watch: Stopwatch) -> np.ndarray:
     """NN3's connection tables of (sub-)contours: (B, F, V, 2).
 
-    points: (B, V, 2), contour vertices first, inner vertices right after them; possible: (B, F, V) bool.
+    points: (B, V, 2), contour vertices first, inner vertices right after them.
     """
+    possible = possible_elements(edge_signs(points, n_contour, n_inner), n_contour, n_inner)
     with watch("NN3"):
         n, m = int(n_contour.max()), max(1, int(n_inner.max()))
         contour = points[:, :n]
