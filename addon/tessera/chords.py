@@ -120,10 +120,8 @@ def _best_of_many(batch: _Batch, shortlist: int) -> tuple[np.ndarray, np.ndarray
     for rows in np.array_split(np.arange(len(batch.size)), 1 + len(batch.size) * n_pairs // _BLOCK):
         block = _rows(batch, rows)
         start, end = _pairs(block)
-        cost = _first_cost(block, start, end)
-        if cost.shape[1] > shortlist:
-            best = np.argpartition(cost, shortlist, axis=1)[:, :shortlist]
-            start, end, cost = (np.take_along_axis(a, best, axis=1) for a in (start, end, cost))
+        start, end, _ = _keep_best(max(4 * shortlist, start.shape[1] // 5), start, end, _cut_cost(block, start, end))
+        start, end, cost = _keep_best(shortlist, start, end, _first_cost(block, start, end))
         cost = cost + _close_cost(block, start, end, cost)
         best = np.argmin(cost, axis=1)[:, None]
         possible = np.isfinite(np.take_along_axis(cost, best, axis=1))
@@ -149,39 +147,50 @@ def _pairs(batch: _Batch) -> tuple[np.ndarray, np.ndarray]:
     return np.minimum(start, end), np.maximum(start, end)
 
 
-def _first_cost(batch: _Batch, start: np.ndarray, end: np.ndarray) -> np.ndarray:
-    """Cost (P, C) of chords by what their ends and the two parts' areas tell; infinite where they leave the polygon."""
+def _keep_best(n: int, start: np.ndarray, end: np.ndarray, cost: np.ndarray):
+    """The n columns of lowest cost in each row of (P, C) arrays."""
+    if cost.shape[1] <= n:
+        return start, end, cost
+    best = np.argpartition(cost, n, axis=1)[:, :n]
+    return tuple(np.take_along_axis(a, best, axis=1) for a in (start, end, cost))
+
+
+def _cut_cost(batch: _Batch, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """Cost (P, C) of cuts: low for short ones between large parts and at reflex corners; infinite if impossible."""
     row = np.arange(len(start))[:, None]
-    a, b = batch.points[row, start], batch.points[row, end]
-    along = b - a
-    length = np.hypot(along[..., 0], along[..., 1])
-    cross = b[..., 0] * a[..., 1] - b[..., 1] * a[..., 0]
-    swept = batch.swept[row, end] - batch.swept[row, start] + cross
+    ax, ay = batch.points[row, start, 0], batch.points[row, start, 1]
+    bx, by = batch.points[row, end, 0], batch.points[row, end, 1]
+    squared = (bx - ax) ** 2 + (by - ay) ** 2
+    swept = batch.swept[row, end] - batch.swept[row, start] + bx * ay - by * ax
     total = batch.swept[np.arange(len(start)), batch.size - 1][:, None]
     smaller = 0.5 * np.minimum(swept, total - swept)
-
-    direction = np.arctan2(along[..., 1], along[..., 0])
-    angles = []
-    for slot, heading in ((start, direction), (end, direction + np.pi)):
-        interior = batch.interior[row, slot]
-        first = (heading - batch.onward[row, slot]) % (2 * np.pi)
-        angles.append((interior, first, interior - first))
-
-    edge_length = batch.edge_length[:, None]
-    natural = natural_segments(length, batch.spacing[row, start], batch.spacing[row, end], edge_length)
     n_edges = end - start
-    most = np.minimum(n_edges, batch.size[:, None] - n_edges) - 1
-    possible = (most >= 1) & (end < batch.size[:, None]) & (smaller > 0) & (length > 4 * batch.safe[:, None])
-    for _, first, second in angles:
-        possible &= (first > 1e-4) & (second > 1e-4)
+    possible = (smaller > 0) & (squared > 16 * batch.safe[:, None] ** 2) & (end < batch.size[:, None])
+    possible &= (n_edges >= 2) & (batch.size[:, None] - n_edges >= 2)
     with np.errstate(divide="ignore", invalid="ignore"):
-        n_segments = np.clip(np.rint(natural), 1, np.maximum(most, 1))
-        stretch = np.log(natural / n_segments)
-        # A short cut between large parts: the length squared relative to the smaller part.
-        cost = np.log(length**2 / smaller) + 2.0 * stretch**2
-    for interior, first, second in angles:
-        cost = cost + _end_cost(first) + _end_cost(second) - _reflex(interior)
-    return np.where(possible, cost, np.inf)
+        cost = np.log(squared / smaller)
+    reflex = _reflex(batch.interior)
+    return np.where(possible, cost - reflex[row, start] - reflex[row, end], np.inf)
+
+
+def _first_cost(batch: _Batch, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """Cost (P, C) of chords by all but the vertices near them; infinite where they leave the polygon at an end."""
+    row = np.arange(len(start))[:, None]
+    along = batch.points[row, end] - batch.points[row, start]
+    length = np.hypot(along[..., 0], along[..., 1])
+    natural = natural_segments(length, batch.spacing[row, start], batch.spacing[row, end], batch.edge_length[:, None])
+    n_edges = end - start
+    most = np.maximum(np.minimum(n_edges, batch.size[:, None] - n_edges) - 1, 1)
+    with np.errstate(divide="ignore"):
+        stretch = np.log(natural / np.clip(np.rint(natural), 1, most))
+        cost = _cut_cost(batch, start, end) + 2.0 * stretch**2
+    direction = np.arctan2(along[..., 1], along[..., 0])
+    for slot, heading in ((start, direction), (end, direction + np.pi)):
+        first = (heading - batch.onward[row, slot]) % (2 * np.pi)
+        second = batch.interior[row, slot] - first
+        leaves_inside = (first > 1e-4) & (second > 1e-4)
+        cost = np.where(leaves_inside, cost + _end_cost(first) + _end_cost(second), np.inf)
+    return cost
 
 
 def _end_cost(angle: np.ndarray) -> np.ndarray:
