@@ -17,8 +17,8 @@ import onnxruntime
 FOLDER = Path(__file__).resolve().parents[2] / "onnx_models"
 
 # Sizes that contours and inner vertices are padded to.
-_PADDED_EDGES = np.array([4, 6, 8, 10, 12, 14, 16, 20, 24, 32, 40, 48, 64])
-_PADDED_INNER = np.array([1, 2, 4, 6, 8, 10, 12, 16, 20, 24, 32])
+_PADDED_EDGES = np.array([4, 8, 12, 16, 24, 32, 48, 64])
+_PADDED_INNER = np.array([1, 2, 4, 8, 12, 16, 24, 32])
 # Pairs of tokens in one call: bounds the memory of the attention.
 _CALL_SIZE = 1 << 19
 
@@ -28,6 +28,8 @@ def session(role: str) -> onnxruntime.InferenceSession:
     """The session of ``nn1``, ``nn2_scores``, ``nn2_moves`` or ``nn3``; opened once."""
     options = onnxruntime.SessionOptions()
     options.log_severity_level = 3
+    # Threads that wait by spinning slow everything else down, and calls here are many and short.
+    options.add_session_config_entry("session.intra_op.allow_spinning", "0")
     return onnxruntime.InferenceSession(FOLDER / f"{role}.onnx", options, providers=["CPUExecutionProvider"])
 
 
