@@ -85,8 +85,8 @@ def triangulate(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, 
     points: (B, V, 2) float64, each row n_contour vertices of a simple counter-clockwise polygon, then n_inner distinct
     vertices strictly inside, then padding of any value; n_contour, n_inner: (B,) int. connect: NN3, a function of
     points, n_contour and n_inner of contours in the same form -> (B, max n_contour, V, 2) tables of (q_worst, q_mean).
-    It is also asked for sub-contours, which can have as many edges as the contour has vertices. Their points are the
-    same points.
+    It is also asked for sub-contours, whose edges can be as many as the contour has vertices. Raises ValueError where
+    no element is possible, which is so only if a contour is not as described; other such contours may go unnoticed.
     """
     n_rows, width = points.shape[:2]
     contours = Contours(
@@ -141,6 +141,10 @@ def _connect_facets(contours: Contours, tables: np.ndarray) -> tuple[np.ndarray,
     starts = edge_starts(n_contour)
     possible = possible_elements(signs, n_contour, contours.n_inner)
     n_facets, width = possible.shape[1:]
+    hopeless = ~possible.any(axis=(1, 2))
+    if hopeless.any():
+        place = contours.owner[hopeless][0]
+        raise ValueError(f"contour {place} is not a simple counter-clockwise polygon with its inner vertices inside")
     scores, stuck = _scores(contours.points, starts, tables, possible)
     rows = np.arange(len(scores))
     boundaries = open_contours(n_contour)
