@@ -1,4 +1,4 @@
-"""Object > Convert > Triangle Mesh from Outline."""
+"""Object > Convert > Mesh by Tessera."""
 
 import bpy
 
@@ -11,7 +11,7 @@ class TESSERA_OT_mesh_curve(bpy.types.Operator):
     """Make an even triangle mesh of each selected planar closed curve or text; the curve stays as it is"""
 
     bl_idname = "tessera.mesh_curve"
-    bl_label = "Even Triangle Mesh"
+    bl_label = "Mesh by Tessera"
     bl_options = {"REGISTER", "UNDO"}
 
     # Not remembered from one use to the next: a length that suits one object rarely suits another.
