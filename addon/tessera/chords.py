@@ -10,6 +10,7 @@ from .predicates import orientation, segments_cross
 GRADING = 0.3
 # Polygons up to this size consider all pairs of vertices; larger ones all pairs with so many of them.
 _ALL_PAIRS = 64
+_ENDS = 32
 # How many of the pairs with the best first cost are looked at closely, and how many if none of them is possible.
 _SHORTLISTS = (24, 600)
 _BLOCK = 400_000
@@ -115,7 +116,7 @@ def _rows(batch: _Batch, rows: np.ndarray) -> _Batch:
 def _best_of_many(batch: _Batch, shortlist: int) -> tuple[np.ndarray, np.ndarray]:
     """The best chord (P,), (P,) of each polygon among the `shortlist` pairs of the lowest first cost, or -1, -1."""
     width = batch.points.shape[1]
-    n_pairs = width * (width - 1) // 2 if width <= _ALL_PAIRS else width * _ALL_PAIRS
+    n_pairs = width * (width - 1) // 2 if width <= _ALL_PAIRS else width * _ENDS
     found = []
     for rows in np.array_split(np.arange(len(batch.size)), 1 + len(batch.size) * n_pairs // _BLOCK):
         block = _rows(batch, rows)
@@ -137,7 +138,7 @@ def _pairs(batch: _Batch) -> tuple[np.ndarray, np.ndarray]:
         start, end = np.triu_indices(width, 1)
         return np.broadcast_to(start, (n_rows, len(start))), np.broadcast_to(end, (n_rows, len(end)))
     # Half of the ends where the polygon turns inwards most, half evenly spaced.
-    half = _ALL_PAIRS // 2
+    half = _ENDS // 2
     inside = np.arange(width) < batch.size[:, None]
     reflex = np.argsort(np.where(inside, -batch.interior, 0.0), axis=1, kind="stable")[:, :half]
     even = np.arange(half) * batch.size[:, None] // half
