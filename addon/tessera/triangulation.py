@@ -55,7 +55,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from .cavities import Contours, add_elements, join, open_contours, sub_contours
-from .quality import element_quality
 from .visibility import crossed_edges, edge_signs, edge_starts, possible_elements
 
 Connect = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
@@ -176,8 +175,7 @@ def _scores(
     too (s,): there every possible entry counts by its own quality.
     """
     row, facet, vertex = np.nonzero(possible)
-    corners = np.stack([starts[row, facet], starts[row, facet + 1], vertex], axis=1) + row[:, None] * points.shape[1]
-    own = np.maximum(element_quality(points.reshape(-1, 2), corners), 0)
+    own = _facet_quality(points, starts)[row, facet, vertex]
     worst, mean = np.nan_to_num(tables[row, facet, vertex], nan=0, posinf=0, neginf=0).T
     acceptable = worst > 0
     stuck = np.bincount(row[acceptable], minlength=len(possible)) == 0
@@ -186,6 +184,17 @@ def _scores(
     scores = np.zeros(possible.shape, dtype=np.int32)
     scores[row, facet, vertex] = (value * 2**_BITS).astype(np.int32) + 1
     return scores, np.flatnonzero(stuck)
+
+
+def _facet_quality(points: np.ndarray, starts: np.ndarray) -> np.ndarray:
+    """`element_quality` of each facet with each vertex, 0 where it is not positive: (B, F, V) float64."""
+    x, y = points.transpose(2, 0, 1)
+    dx = x[:, None] - np.take_along_axis(x, starts, axis=1)[..., None]
+    dy = y[:, None] - np.take_along_axis(y, starts, axis=1)[..., None]
+    double_area = dx[:, :-1] * dy[:, 1:] - dx[:, 1:] * dy[:, :-1]
+    squared = dx * dx + dy * dy
+    sides = squared[:, :-1] + squared[:, 1:] + np.take_along_axis(squared[:, :-1], starts[:, 1:, None], axis=2)
+    return 2 * np.sqrt(3) * np.maximum(double_area, 0) / np.maximum(sides, np.finfo(float).tiny)
 
 
 def _exclude(

@@ -14,7 +14,7 @@ from .predicates import orientation
 # all. The bound is 8 u = 2^-21 of a number that is at least |left| + |right|.
 _ERROR_BOUND = 2.0**-21
 # Signs computed at a time, so that the temporaries stay in the processor's cache.
-_BLOCK_SIZE = 1 << 16
+_BLOCK_SIZE = 1 << 17
 
 
 def edge_starts(n_contour: np.ndarray) -> np.ndarray:
@@ -50,23 +50,31 @@ def edge_signs(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray) -
 
 def _block_signs(points: np.ndarray, starts: np.ndarray, pair: np.ndarray, signs: np.ndarray) -> None:
     """Fill `signs`, the result of `edge_signs`, for a few contours; pair (B, F + 1, V): two different vertices."""
-    offset = points[:, None] - points[:, :, None]
-    offset /= np.abs(offset).max(axis=(1, 2, 3), keepdims=True)
-    to_vertex = np.ascontiguousarray(offset.transpose(0, 1, 3, 2)[:, :, ::-1], dtype=np.float32)
-    to_start = np.take_along_axis(offset, starts[:, None, :, None], axis=2) * [1, -1]
-    bound = _ERROR_BOUND * np.abs(to_start).sum(axis=-1, keepdims=True)
-    to_start = (to_start / np.where(bound > 0, bound, 1)).astype(np.float32)
+    x, y = np.ascontiguousarray(points.transpose(2, 0, 1))
+    unit = np.maximum(np.ptp(x, axis=1), np.ptp(y, axis=1))[:, None, None]
+    n_rows, width, n_starts = signs.shape[:3]
+    to_vertex = np.empty((n_rows, width, 2, width), dtype=np.float32)
+    to_vertex[:, :, 0] = (y[:, None] - y[:, :, None]) / unit
+    to_vertex[:, :, 1] = (x[:, None] - x[:, :, None]) / unit
+    start_x = (np.take_along_axis(x, starts, axis=1)[:, None] - x[:, :, None]) / unit
+    start_y = (np.take_along_axis(y, starts, axis=1)[:, None] - y[:, :, None]) / unit
+    bound = _ERROR_BOUND * (np.abs(start_x) + np.abs(start_y))
+    bound[bound == 0] = 1
+    to_start = np.empty((n_rows, width, n_starts, 2), dtype=np.float32)
+    to_start[..., 0] = start_x / bound
+    to_start[..., 1] = -start_y / bound
     # (start - x) × (vertex - x), in units of the error bound
     determinant = to_start @ to_vertex
     np.subtract((determinant > 1).view(np.int8), (determinant < -1).view(np.int8), out=signs)
     distinct = pair[:, None] & pair.transpose(0, 2, 1)[..., None]
-    vertex = np.arange(signs.shape[1])
+    vertex = np.arange(width)
     distinct[:, vertex, :, vertex] = False
     signs *= distinct.view(np.int8)
-    doubtful = np.flatnonzero(distinct & (signs == 0))
+    distinct &= signs == 0
+    doubtful = np.flatnonzero(distinct)
     if len(doubtful):
-        row, x, k, v = np.unravel_index(doubtful, signs.shape)
-        signs[row, x, k, v] = orientation(points[row, starts[row, k]], points[row, v], points[row, x])
+        row, third, k, v = np.unravel_index(doubtful, signs.shape)
+        signs[row, third, k, v] = orientation(points[row, starts[row, k]], points[row, v], points[row, third])
 
 
 def facet_sides(signs: np.ndarray, starts: np.ndarray) -> np.ndarray:
