@@ -17,7 +17,7 @@ def edge_lengths(loop):
 
 
 @given(simple_polygons, st.sampled_from([10.0, 1.0, 0.3, 0.05]), placements)
-@settings(deadline=None)
+@settings(deadline=None, max_examples=60)
 def test_stays_on_the_contour_simple_and_counter_clockwise(polygon, edge_length, placement):
     polygon = placed(polygon, placement)
     result = resample(polygon, edge_length * placement[0])

@@ -37,6 +37,9 @@ def test_agrees_with_the_independent_test_of_simplicity(seed, n, on_a_grid, plac
     except ContourError as error:
         simple = False
         assert error.reason in ("self-intersection", "zero-area", "too-few-points")
+        if error.reason == "zero-area":  # on one line to rounding: simple by luck, perhaps
+            assert np.linalg.svd(points - points[0])[1][1] < 1e-11 * placement[0]
+            return
     assert simple == (keep.sum() >= 3 and polygon_is_simple(points[keep]))
 
 
