@@ -122,7 +122,7 @@ TRANSFORMS = {
     "mirrored thrice": Matrix.Diagonal((-2, -2, -2, 1)),
     "not uniform": Matrix.Translation((1, 2, 3))
     @ Euler((1, 0.5, -2)).to_matrix().to_4x4()
-    @ Matrix.Diagonal((4, 0.5, 3, 1)),
+    @ Matrix.Diagonal((2, 0.8, 3, 1)),
     "tiny": Matrix.Diagonal((1e-4, 1e-4, 1e-4, 1)),
     "huge": Matrix.Diagonal((1e4, 1e4, 1e4, 1)),
 }
@@ -340,11 +340,20 @@ def test_one_failure_among_several_makes_nothing():
     refuse("cross", edge_length=0.2)
 
 
-def test_without_a_curve_the_operator_is_greyed_out():
-    assert not bpy.ops.tessera.mesh_curve.poll()
-    obj = bpy.data.objects.new("Mesh", bpy.data.meshes.new("Mesh"))
+def test_without_a_curve_there_is_one_clear_report():
+    obj = bpy.data.objects.new("Broken", bpy.data.meshes.new("Broken"))
     bpy.context.scene.collection.objects.link(obj)
     select(obj)
+    with pytest.raises(RuntimeError, match="No curve or text is selected"):
+        bpy.ops.tessera.mesh_curve()
+
+
+def test_the_operator_can_be_adjusted_once_the_new_mesh_is_selected():
+    curve = circle()
+    run(edge_length=0.4)
+    assert not curve.select_get()
+    assert bpy.ops.tessera.mesh_curve.poll()
+    bpy.ops.object.mode_set(mode="EDIT")
     assert not bpy.ops.tessera.mesh_curve.poll()
 
 

@@ -39,18 +39,18 @@ class TESSERA_OT_mesh_curve(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Object Mode, with a curve or text selected."""
+        """Object Mode. What is selected is not asked: Adjust Last Operation polls when the new mesh is selected."""
         if context.mode != "OBJECT":
-            cls.poll_message_set("Leave Edit Mode first")
-            return False
-        if not _selected(context):
-            cls.poll_message_set("Select a curve or a text object")
+            cls.poll_message_set("Only in Object Mode")
             return False
         return True
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Mesh everything, and only then make objects: a failure leaves the scene as it was."""
-        objects = _selected(context)
+        objects = [obj for obj in context.selected_objects if obj.type in READABLE]
+        if not objects:
+            self.report({"ERROR"}, "No curve or text is selected. Select what is to be meshed")
+            return {"CANCELLED"}
         try:
             outlines = [self._read(obj, context) for obj in objects]
             if not self.properties.is_property_set("edge_length"):
@@ -91,10 +91,6 @@ class _Failure(Exception):
     def __init__(self, obj: bpy.types.Object, error: ContourError) -> None:
         kind = "Text" if obj.type == "FONT" else "Curve"
         super().__init__(f"{kind} '{obj.name}': {error}")
-
-
-def _selected(context: bpy.types.Context) -> list[bpy.types.Object]:
-    return [obj for obj in context.selected_objects if obj.type in READABLE]
 
 
 def _show(context: bpy.types.Context, made: list[bpy.types.Object], sources: list[bpy.types.Object]) -> None:
