@@ -17,8 +17,8 @@ left is the same as going through the rows in the order of their best entries. B
 Two departures from the listing, both found by measuring (1 200 contours with Gmsh's inner vertices, against CDT). The
 paper orders by q_worst, with q_mean only for ties; but very often an entry's q_worst is due to an element elsewhere,
 so that any error of the table decides between entries that should tie: with errors of 0.02 in a calculated table,
-ē_mean was 4.4 %. Ordering by the sum min(q_worst, q of the element itself) + q_mean + 0.05 q makes that 0.9 %, and
-with calculated tables -0.2 and 0.03 % (e_worst, e_mean). And a facet whose best entry has become impossible takes its
+ē_mean was 4.4 %. Ordering by the sum min(q_worst, q of the element itself) + q_mean + 0.05 q makes that 0.8 %, and
+with calculated tables -0.1 and 0.04 % (ē_worst, ē_mean). And a facet whose best entry has become impossible takes its
 next best one: leaving it to the recursion, if its entry falls below any share of its best one, changed nothing that
 could be measured.
 

@@ -154,12 +154,12 @@ def test_a_mesh_does_not_depend_on_its_batch(name):
     order = np.random.default_rng(0).permutation(len(members))
     shuffled = meshes([members[i] for i in order], connect, extra=5)
     assert [shuffled[i] for i in np.argsort(order)] == together
-    assert meshes(members[:17], connect) + meshes(members[17:], connect) == together
+    assert meshes(members[:7], connect) + meshes(members[7:], connect) == together
     assert [mesh for member in members for mesh in meshes([member], connect)] == together
 
 
 def test_chunks_do_not_change_meshes(monkeypatch):
-    members = mixed_batch(30)
+    members = mixed_batch(20)
     together = meshes(members, scattered)
     monkeypatch.setattr("tessera.triangulation._CHUNK_SIZE", 1)
     assert meshes(members, scattered) == together
