@@ -17,7 +17,7 @@ from tqdm import tqdm
 
 from . import configuration
 from .data import Examples, by_size, elements_of, load, move_batch, reflect, score_batch, table_batch, trim
-from .networks import ROLES, length
+from .networks import ROLES
 
 DEVICE = "cuda" if torch.cuda.is_available() else "cpu"
 
@@ -25,6 +25,13 @@ DEVICE = "cuda" if torch.cuda.is_available() else "cpu"
 def tensor(array: np.ndarray) -> Tensor:
     kind = torch.int64 if array.dtype.kind == "i" else torch.float32
     return torch.as_tensor(np.ascontiguousarray(array), dtype=kind, device=DEVICE)
+
+
+def quality(a: Tensor, b: Tensor, c: Tensor) -> Tensor:
+    """Element quality of triangles (..., 2), negative where inverted."""
+    squares = sum((u - v).pow(2).sum(-1) for u, v in ((a, b), (b, c), (c, a)))
+    u, v = b - a, c - a
+    return 2 * 3**0.5 * (u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]) / (squares + 1e-9)
 
 
 def loss_nn1(net: torch.nn.Module, examples: Examples, rng: np.random.Generator) -> Tensor:
@@ -46,9 +53,7 @@ def mesh_energy(at: Tensor, elements: Tensor) -> Tensor:
     """(B,) a soft maximum of -log q over each mesh: (1/4) log of the mean of q^-4, finite where inverted."""
     index = elements.clamp(min=0).reshape(len(elements), -1, 1).expand(-1, -1, 2)
     a, b, c = torch.gather(at, 1, index).reshape(*elements.shape, 2).unbind(2)
-    squares = sum((u - v).pow(2).sum(-1) for u, v in ((a, b), (b, c), (c, a)))
-    u, v = b - a, c - a
-    q = 2 * 3**0.5 * (u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]) / (squares + 1e-9)
+    q = quality(a, b, c)
     energy = torch.where(q > 0.1, q.clamp(min=0.1) ** -4, 1e4 + 4e5 * (0.1 - q))
     real = (elements[..., 0] >= 0).float()
     return 0.25 * torch.log((energy * real).sum(1) / real.sum(1))
@@ -76,11 +81,8 @@ def mean_loss(contour: Tensor, moved: Tensor, elements: np.ndarray, rows: Tensor
     at, elements = torch.cat([contour, moved], 1)[rows], tensor(elements)[rows]
     index = elements.clamp(min=0).reshape(len(elements), -1, 1).expand(-1, -1, 2)
     a, b, c = torch.gather(at, 1, index).reshape(*elements.shape, 2).unbind(2)
-    squares = sum(length(u - v).pow(2) for u, v in ((a, b), (b, c), (c, a)))
-    u, v = b - a, c - a
-    q = 2 * 3**0.5 * (u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]) / (squares + 1e-9)
     real = (elements[..., 0] >= 0).float()
-    return (((1 - q) * real).sum(1) / real.sum(1)).mean()
+    return (((1 - quality(a, b, c)) * real).sum(1) / real.sum(1)).mean()
 
 
 def loss_nn3(net: torch.nn.Module, examples: Examples, rng: np.random.Generator) -> Tensor:
@@ -90,13 +92,26 @@ def loss_nn3(net: torch.nn.Module, examples: Examples, rng: np.random.Generator)
     entries = possible.nonzero()
     out = net(batch["contour"], batch["n_contour"], batch["inner"], batch["n_inner"], entries)
     squared = (out - table[possible]).pow(2).sum(-1).mean()
-    merit = torch.tensor([20.0, 10.0], device=DEVICE)
-    away = torch.where(possible, 0.0, -1e4)
-    wanted = torch.softmax((table * merit).sum(-1) + away, -1)
-    got = away.masked_scatter(possible, (out * merit).sum(-1))
-    divergence = -(wanted * torch.log_softmax(got, -1)).sum(-1)
+    own = element_qualities(batch, entries)
+
+    def rank(entry: Tensor) -> Tensor:
+        """What the triangulation orders the possible entries (P, 2) by; the others far below: (n, N, N + M)."""
+        value = torch.minimum(entry[:, 0], own) + entry[:, 1]
+        return torch.full(possible.shape, -1e4, device=DEVICE).masked_scatter(possible, 20 * value)
+
+    wanted = torch.softmax(rank(table[possible]), -1)
+    divergence = -(wanted * torch.log_softmax(rank(out), -1)).sum(-1)
     choices = possible.sum(-1) > 1
     return squared + 0.02 * divergence[choices].mean()
+
+
+def element_qualities(batch: dict[str, Tensor], entries: Tensor) -> Tensor:
+    """(P,) quality of the element that each entry (P, 3) of a table asks for."""
+    row, first, third = entries.unbind(1)
+    at = torch.cat([batch["contour"], batch["inner"]], 1)
+    second = torch.where(first + 1 < batch["n_contour"][row], first + 1, 0)
+    a, b, c = at[row, first], at[row, second], at[row, third]
+    return quality(a, b, c)
 
 
 LOSSES = {"nn1": loss_nn1, "nn2_scores": loss_nn2_scores, "nn2_moves": loss_nn2_moves, "nn3": loss_nn3}

@@ -11,7 +11,6 @@ from .placement import MOST_INNER, place_inner_vertices
 from .stopwatch import Stopwatch
 from .transform import superimpose
 from .triangulation import triangulate
-from .visibility import edge_signs, possible_elements
 
 LARGEST_CONTOUR = 16
 
@@ -48,12 +47,13 @@ def mesh_contours(contours: np.ndarray, n_contour: np.ndarray, edge_length: np.n
     return ContourMeshes(inner, n_inner, wanted, meshes.triangles, meshes.owner, meshes.fallbacks)
 
 
-def connect(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, watch: Stopwatch) -> np.ndarray:
+def connect(
+    points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, possible: np.ndarray, watch: Stopwatch
+) -> np.ndarray:
     """NN3's connection tables of (sub-)contours: (B, F, V, 2).
 
-    points: (B, V, 2), contour vertices first, inner vertices right after them.
+    points: (B, V, 2), contour vertices first, inner vertices right after them; possible: (B, F, V) bool.
     """
-    possible = possible_elements(edge_signs(points, n_contour, n_inner), n_contour, n_inner)
     with watch("NN3"):
         n, m = int(n_contour.max()), max(1, int(n_inner.max()))
         contour = points[:, :n]
@@ -69,8 +69,8 @@ def connect(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, watc
             transformation.apply(contour), n_contour, transformation.apply(inner), n_inner, entries
         )
         table = np.zeros((*possible.shape, 2))
-        # Rounded, so that elements of equal worth are ordered by q_mean, as the paper has it.
-        table[row, facet, vertex] = np.round(rated[row, facet, column], 2)
+        # Rounded, so that the last bits, which may depend on the batch, decide nothing.
+        table[row, facet, vertex] = np.round(rated[row, facet, column], 4)
         return table
 
 

@@ -57,7 +57,7 @@ import numpy as np
 from .cavities import Contours, add_elements, join, open_contours, sub_contours
 from .visibility import crossed_edges, edge_signs, edge_starts, possible_elements
 
-Connect = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
+Connect = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 # Entries are compared to this many bits. What differs by less is a tie, so that rounding rarely decides.
 _BITS = 20
@@ -66,7 +66,7 @@ _OWN_WEIGHT = 0.05
 # Where contours are divided by their number of vertices into groups of a level.
 _SIZES = (5, 7, 10, 14, 20)
 # Size in bytes of the sign tensor that is held at a time.
-_CHUNK_SIZE = 1 << 21
+_CHUNK_SIZE = 1 << 24
 
 
 @dataclass(frozen=True)
@@ -83,8 +83,8 @@ def triangulate(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, 
 
     points: (B, V, 2) float64, each row n_contour vertices of a simple counter-clockwise polygon, then n_inner distinct
     vertices strictly inside, then padding of any value; n_contour, n_inner: (B,) int. connect: NN3, a function of
-    points, n_contour and n_inner of contours in the same form -> (B, max n_contour, V, 2) tables of (q_worst, q_mean).
-    It is also asked for sub-contours, whose edges can be as many as the contour has vertices. Raises ValueError where
+    points, n_contour and n_inner of contours in the same form, and of which entries are possible elements (B, F, V)
+    bool, F = max n_contour -> (B, F, V, 2) tables of (q_worst, q_mean); other entries are not looked at. It is also asked for sub-contours, whose edges can be as many as the contour has vertices. Raises ValueError where
     no element is possible, which is so only if a contour is not as described; other such contours may go unnoticed.
     """
     n_rows, width = points.shape[:2]
@@ -101,10 +101,9 @@ def triangulate(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, 
     while level:
         rest = []
         for group in _by_size(join(level)):
-            tables = connect(group.points, group.n_contour, group.n_inner)
             for rows in _chunks(group):
                 chunk = group.rows(rows)
-                triangles, row, stuck, left = _connect_facets(chunk, tables[rows])
+                triangles, row, stuck, left = _connect_facets(chunk, connect)
                 single = (left.n_contour == 3) & (left.n_inner == 0)
                 elements += [np.take_along_axis(chunk.slots[row], triangles, axis=1), left.slots[single, :3]]
                 owners += [chunk.owner[row], left.owner[single]]
@@ -129,10 +128,10 @@ def _chunks(contours: Contours) -> list[np.ndarray]:
     return np.array_split(np.arange(n_rows), min(n_rows, 1 + n_rows * each // _CHUNK_SIZE))
 
 
-def _connect_facets(contours: Contours, tables: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, Contours]:
+def _connect_facets(contours: Contours, connect: Connect) -> tuple[np.ndarray, np.ndarray, np.ndarray, Contours]:
     """Connect the facets of each contour, best entry first, as long as an entry is left.
 
-    tables: (B, F, V, 2). Returns the elements (t, 3) and their rows (t,), the rows (s,) that had no acceptable entry
+    Returns the elements (t, 3) and their rows (t,), the rows (s,) that had no acceptable entry
     and took the one element of best quality, and the sub-contours that are left.
     """
     n_contour = contours.n_contour
@@ -144,6 +143,7 @@ def _connect_facets(contours: Contours, tables: np.ndarray) -> tuple[np.ndarray,
     if hopeless.any():
         place = contours.owner[hopeless][0]
         raise ValueError(f"contour {place} is not a simple counter-clockwise polygon with its inner vertices inside")
+    tables = connect(contours.points, n_contour, contours.n_inner, possible)
     scores, stuck = _scores(contours.points, starts, tables, possible)
     rows = np.arange(len(scores))
     boundaries = open_contours(n_contour)

@@ -78,7 +78,7 @@ def padded(members: list[tuple[np.ndarray, np.ndarray]], extra: int = 0):
     return points, n_contour, n_inner
 
 
-def scattered(points, n_contour, n_inner):
+def scattered(points, n_contour, n_inner, possible):
     """Entries that look random, but depend on the contour's own points alone."""
     x = points[..., 0] * 12.9898 + points[..., 1] * 78.233
     ends = np.take_along_axis(x, edge_starts(n_contour), axis=1)
@@ -86,7 +86,7 @@ def scattered(points, n_contour, n_inner):
     return np.stack([value % 1, (7 * value) % 1], axis=-1)
 
 
-def own_quality(points, n_contour, n_inner):
+def own_quality(points, n_contour, n_inner, possible):
     starts = edge_starts(n_contour)
     n_rows, n_facets, width = len(points), starts.shape[1] - 1, points.shape[1]
     row, facet, vertex = np.indices((n_rows, n_facets, width)).reshape(3, -1)
@@ -96,7 +96,7 @@ def own_quality(points, n_contour, n_inner):
 
 
 def filled(value):
-    return lambda points, n_contour, n_inner: np.full((len(points), n_contour.max(), points.shape[1], 2), value)
+    return lambda points, n_contour, n_inner, possible: np.full((*possible.shape, 2), value)
 
 
 TABLES = {
@@ -207,7 +207,7 @@ def test_calculated_tables_lead_close_to_cdt():
         if len(inner) >= 2:
             members.append((polygon, np.array(inner)))
     batch = padded(members)
-    result = triangulate(*batch, connection_tables)
+    result = triangulate(*batch, lambda *given: connection_tables(*given[:3]))
     errors = []
     for row, (polygon, inner) in enumerate(members):
         vertices = np.concatenate([polygon, inner])
