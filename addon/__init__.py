@@ -1,1 +1,1 @@
-"""All that the extension ships: `tessera`, the mesher, which knows nothing of Blender, and `blender`, the layer over it."""
+"""All that the extension ships: `tessera`, a mesher that knows nothing of Blender, and `blender`, the layer over it."""

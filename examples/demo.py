@@ -48,6 +48,7 @@ def main() -> None:
         )
 
     bpy.ops.wm.save_as_mainfile(filepath=str(BUILD / "demo.blend"))
+    addon.blender.unregister()
     draw(panels, BUILD / "demo.png")
     print(f"wrote {BUILD / 'demo.blend'} and {BUILD / 'demo.png'}")
 
