@@ -6,4 +6,5 @@ import pytest
 
 
 def pytest_collect_directory(path: Path, parent: pytest.Collector) -> pytest.Collector | None:
+    """Collect the root as a folder, not as a package."""
     return pytest.Dir.from_parent(parent, path=path) if path == Path(__file__).parent else None

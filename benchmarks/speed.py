@@ -21,6 +21,7 @@ CONTOURS = 1000
 
 
 def main() -> None:
+    """Print the table."""
     points, n_contour, l_s = evaluate.held_out(CONTOURS, seed=77)
     reference.start()
     mesh_contours(points, n_contour, l_s, Stopwatch())
@@ -35,7 +36,9 @@ def main() -> None:
             reference.mesh(points[row, :n], l_s[row])
         theirs.append(time.perf_counter() - start)
     each = 1e3 / CONTOURS
-    print(f"{CONTOURS} sector contours, N_C 4 to 16, l_s 0.3 to 1; medians of {ROUNDS} rounds; {platform.processor()}, ")
+    print(
+        f"{CONTOURS} sector contours, N_C 4 to 16, l_s 0.3 to 1; medians of {ROUNDS} rounds; {platform.processor()}, "
+    )
     print(f"{os.cpu_count()} cores, onnxruntime {onnxruntime.__version__}, Gmsh {reference.VERSION}\n")
     print("| stage | ms a contour |\n| --- | --- |")
     for stage in stages[0]:

@@ -45,6 +45,7 @@ def simple(points: np.ndarray, n_contour: np.ndarray) -> np.ndarray:
 
 
 def main() -> None:
+    """Mesh and check, with a progress bar."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--contours", type=int, default=20_000)
     parser.add_argument("--polygons", type=int, default=1_000)

@@ -19,7 +19,7 @@ from tessera.stopwatch import Stopwatch
 from tessera.transform import superimpose
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
+import matplotlib.pyplot as plt
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "images"
 INK = "#1d3557"
@@ -81,7 +81,12 @@ def way_of_the_data() -> None:
     mesh = tessera.mesh([curve], edge_length)
     cells = [division.points[cell[cell >= 0]] for cell in division.cells]
     figure, axes = plt.subplots(2, 3, figsize=(12, 7.2))
-    titles = ["curve", "boundary at the target edge length", "division into cells", "NN1, NN2: inner vertices of a cell"]
+    titles = [
+        "curve",
+        "boundary at the target edge length",
+        "division into cells",
+        "NN1, NN2: inner vertices of a cell",
+    ]
     titles += ["NN3, triangulation: cells meshed", "NN2 again: the mesh, no seams"]
     for ax, title in zip(axes.flat, titles, strict=True):
         ax.set_title(title, fontsize=11, color=INK)

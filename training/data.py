@@ -18,7 +18,7 @@ MOST_PEELED = 32  # edges of the sub-contours that recursion makes
 
 @dataclass(frozen=True)
 class Examples:
-    """Padded float64 contours (n, 16, 2) and inner vertices (n, 32, 2), int64 counts (n,), l_s (n,), and qualities (n, 2)."""
+    """Padded float64 contours (n, N, 2) and inner vertices (n, M, 2), int64 counts (n,), l_s (n,), qualities (n, 2)."""
 
     contour: np.ndarray
     inner: np.ndarray
@@ -101,8 +101,10 @@ def inside(points: np.ndarray, contour: np.ndarray, n_contour: np.ndarray) -> np
     return ((straddles & left & real).sum(-1) % 2).astype(bool)
 
 
-def score_batch(rng: np.random.Generator, examples: Examples, spread: int = 32, near: int = 16) -> tuple[np.ndarray, ...]:
-    """Points (n, M, 2) over each cavity and close to its inner vertices, their scores (n, M), and whether they count."""
+def score_batch(
+    rng: np.random.Generator, examples: Examples, spread: int = 32, near: int = 16
+) -> tuple[np.ndarray, ...]:
+    """Points (n, M, 2) over each cavity and near its inner vertices, their scores (n, M), and whether they count."""
     n = len(examples)
     even = even_lengths(examples.contour, examples.n_contour, examples.n_inner)
     low, high = examples.contour.min(1, keepdims=True), examples.contour.max(1, keepdims=True)
@@ -134,21 +136,20 @@ def is_clear(points, n_contour, n, v, gap):
         b = (a + 1) % n_contour
         if _segment_distance(points, v, a, b) < gap:
             return False
-        if (points[a, 1] > points[v, 1]) != (points[b, 1] > points[v, 1]) and (
-            area2(points, a, b, v) > 0
-        ) == (points[b, 1] > points[a, 1]):
+        if (points[a, 1] > points[v, 1]) != (points[b, 1] > points[v, 1]) and (area2(points, a, b, v) > 0) == (
+            points[b, 1] > points[a, 1]
+        ):
             odd = not odd
     if not odd:
         return False
     for u in range(n_contour, v):
-        if np.hypot(points[u, 0] - points[v, 0], points[u, 1] - points[v, 1]) < gap:
-            return False
-    return True
+        odd &= np.hypot(points[u, 0] - points[v, 0], points[u, 1] - points[v, 1]) >= gap
+    return odd
 
 
 @njit(cache=True)
 def jitter(contour, inner, n_contour, n_inner, noise, even):
-    """Move inner vertices by ``noise``, less where that would leave the cavity. Returns points (N_C + N_I, 2) and success."""
+    """Move inner vertices by ``noise``, less where that would leave the cavity: points (N_C + N_I, 2) and success."""
     n = n_contour + n_inner
     points = np.empty((n, 2))
     points[:n_contour] = contour[:n_contour]
@@ -184,7 +185,7 @@ def elements_of(contour, inner, n_contour, n_inner, out, ok):
 
 
 def move_batch(rng: np.random.Generator, examples: Examples) -> tuple[np.ndarray, np.ndarray]:
-    """Inner vertices to be moved, (n, 32, 2): the teacher's, disturbed, or NN2's own; and whether each example fits, (n,)."""
+    """Inner vertices to be moved, (n, M, 2): the teacher's, disturbed, or NN2's own; and which examples fit, (n,)."""
     even = even_lengths(examples.contour, examples.n_contour, examples.n_inner)
     sigma = rng.uniform(0.02, 0.4, len(examples))
     noise = rng.normal(size=examples.inner.shape) * (sigma * even)[:, None, None]

@@ -81,11 +81,13 @@ def data_fingerprint(folder: Path) -> str:
 
 
 def code_version() -> str:
+    """The commit of the code that trained."""
     command = ["git", "-C", str(configuration.ROOT), "rev-parse", "--short", "HEAD"]
     return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
 
 
 def export(role: str) -> None:
+    """Write one role's file, and check it."""
     state = torch.load(configuration.ROOT / "runs" / f"{role}.pt", map_location="cpu", weights_only=False)
     net = ROLES[role]()
     net.load_state_dict(state["average"])
@@ -121,10 +123,13 @@ def export(role: str) -> None:
     difference = largest_difference(net, file, role)
     if difference > TOLERANCE:
         raise SystemExit(f"{file.name} departs from the framework's output by {difference:.1e}")
-    print(f"{file.name}: {file.stat().st_size / 1e6:.2f} MB, {state['step']} steps, differs by at most {difference:.1e}")
+    print(
+        f"{file.name}: {file.stat().st_size / 1e6:.2f} MB, {state['step']} steps, differs by at most {difference:.1e}"
+    )
 
 
 def main() -> None:
+    """Export the roles of the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("roles", nargs="*", default=list(ROLES), choices=[*ROLES, []])
     for role in parser.parse_args().roles:

@@ -1,7 +1,7 @@
 """Generate the data: ``python -m training.generate [train|validation] [--shards N] [--processes N]``.
 
-A shard is a file of contours, made from a seed of its own; a file that is there is not made again, and one that was being
-made when the run was killed was never given its name.
+A shard is a file of contours, made from a seed of its own; a file that is there is not made again, and one that was
+being made when the run was killed was never given its name.
 """
 
 from __future__ import annotations
@@ -85,6 +85,7 @@ def work(job: tuple[Path, tuple[int, ...], dict]) -> Path:
 
 
 def main() -> None:
+    """Make the shards that are missing."""
     config = configuration.read()["data"]
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("split", nargs="?", default="train", choices=["train", "validation"])

@@ -1,7 +1,8 @@
 """Small triangulations, compiled: constrained Delaunay, forced elements, and the improvement that makes the teacher.
 
 A triangulation of n vertices is its matrix ``opposite`` (n, n) int64: ``opposite[u, v]`` is the third vertex of the
-element on the left of the directed edge (u, v), or -1. Contours are counter-clockwise and come first among the vertices.
+element on the left of the directed edge (u, v), or -1. Contours are counter-clockwise and come first among the
+vertices.
 """
 
 from __future__ import annotations
@@ -31,9 +32,16 @@ def quality(points, a, b, c):
 
 @njit(cache=True)
 def add(opposite, a, b, c):
+    """Add the counter-clockwise element (a, b, c)."""
     opposite[a, b] = c
     opposite[b, c] = a
     opposite[c, a] = b
+
+
+@njit(cache=True)
+def is_within(points, a, b, c, v):
+    """Whether v lies in the closed triangle (a, b, c), give or take a rounding."""
+    return area2(points, a, b, v) >= -TINY and area2(points, b, c, v) >= -TINY and area2(points, c, a, v) >= -TINY
 
 
 @njit(cache=True)
@@ -51,14 +59,9 @@ def cut_ears(points, n, opposite):
             clear = True
             for k in range(left):
                 v = ring[k]
-                if v != a and v != b and v != c:
-                    if (
-                        area2(points, a, b, v) >= -TINY
-                        and area2(points, b, c, v) >= -TINY
-                        and area2(points, c, a, v) >= -TINY
-                    ):
-                        clear = False
-                        break
+                if v not in (a, b, c) and is_within(points, a, b, c, v):
+                    clear = False
+                    break
             if clear:
                 best, best_quality = i, q
         if best < 0:
@@ -112,6 +115,7 @@ def flip(opposite, u, v):
 
 @njit(cache=True)
 def is_convex(points, opposite, u, v):
+    """Whether the two elements on the edge (u, v) form a convex quadrilateral."""
     w, x = opposite[u, v], opposite[v, u]
     return area2(points, u, x, w) > TINY and area2(points, x, v, w) > TINY
 
@@ -191,7 +195,7 @@ def triangles(opposite, n):
 @njit(cache=True)
 def crosses(points, a, b, c, d):
     """Whether the open segments (a, b) and (c, d) cross properly."""
-    if a == c or a == d or b == c or b == d:
+    if a in (c, d) or b in (c, d):
         return False
     return area2(points, a, b, c) * area2(points, a, b, d) < 0 and area2(points, c, d, a) * area2(points, c, d, b) < 0
 
@@ -230,6 +234,7 @@ def energy(q):
 
 @njit(cache=True)
 def ball_energy(points, opposite, n, v):
+    """Sum of the energy of the elements around v."""
     total = 0.0
     for a in range(n):
         b = opposite[v, a]

@@ -1,8 +1,8 @@
 """The three roles' networks: one a role, for every N_C and N_I, padded and masked.
 
-All take transformed contours: ``contour`` (B, N, 2) float32 counter-clockwise with ``n_contour`` (B,) int64 vertices each,
-the rest padding, and ``l_s`` (B,). Contour vertices are tokens of an encoder; nothing depends on the order of the inner
-vertices nor on where the contour starts.
+All take transformed contours: ``contour`` (B, N, 2) float32 counter-clockwise with ``n_contour`` (B,) int64 vertices
+each, the rest padding, and ``l_s`` (B,). Contour vertices are tokens of an encoder; nothing depends on the order of
+the inner vertices nor on where the contour starts.
 """
 
 from __future__ import annotations
@@ -43,7 +43,9 @@ class Block(nn.Module):
         super().__init__()
         self.before, self.between = nn.LayerNorm(width), nn.LayerNorm(width)
         self.attention = Attention(width, heads, offsets)
-        self.perceptron = nn.Sequential(nn.Linear(width, 2 * width), nn.GELU(approximate="tanh"), nn.Linear(2 * width, width))
+        self.perceptron = nn.Sequential(
+            nn.Linear(width, 2 * width), nn.GELU(approximate="tanh"), nn.Linear(2 * width, width)
+        )
 
     def forward(self, x: Tensor, y: Tensor | None, bias: Tensor, at: tuple[Tensor, Tensor] | None = None) -> Tensor:
         """Self-attention where y is None, else attention to y."""
@@ -71,10 +73,12 @@ def is_real(count: Tensor, size: int) -> Tensor:
 
 
 def cross(a: Tensor, b: Tensor) -> Tensor:
+    """(...,) cross products of (..., 2)."""
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
 def length(a: Tensor) -> Tensor:
+    """(...,) lengths of (..., 2), never quite 0."""
     return torch.sqrt((a * a).sum(-1) + 1e-12)
 
 
@@ -94,6 +98,7 @@ class ContourTokens(nn.Module):
         self.embed = nn.Linear(13, width)
 
     def forward(self, contour: Tensor, n_contour: Tensor, l_s: Tensor) -> Tensor:
+        """Returns (B, N, W)."""
         after, before = neighbours(contour, n_contour)
         ahead, back = after - contour, before - contour
         la, lb = length(ahead), length(back)
@@ -128,9 +133,12 @@ class NN1(nn.Module):
     def __init__(self, width: int = 48, heads: int = 4, layers: int = 3):
         super().__init__()
         self.encoder = Encoder(width, heads, layers)
-        self.head = nn.Sequential(nn.LayerNorm(width), nn.Linear(width, width), nn.GELU(approximate="tanh"), nn.Linear(width, 2))
+        self.head = nn.Sequential(
+            nn.LayerNorm(width), nn.Linear(width, width), nn.GELU(approximate="tanh"), nn.Linear(width, 2)
+        )
 
     def forward(self, contour: Tensor, n_contour: Tensor, l_s: Tensor) -> Tensor:
+        """Returns (B,)."""
         x, _ = self.encoder(contour, n_contour, l_s)
         real = is_real(n_contour, contour.shape[1]).unsqueeze(-1)
         mean = (x * real).sum(1) / real.sum(1)
@@ -188,8 +196,11 @@ class Pairs(nn.Module):
         self.layers = nn.Sequential(nn.Linear(4, 16), nn.GELU(approximate="tanh"), nn.Linear(16, heads))
 
     def forward(self, at: Tensor, even: Tensor) -> Tensor:
+        """at (B, n, 2), even (B,). Returns (B, heads, n, n)."""
         away = length(at.unsqueeze(2) - at.unsqueeze(1)) / even.reshape(-1, 1, 1)
-        features = torch.stack([away.clamp(max=6), torch.exp(-away), torch.exp(-away * away), torch.exp(-away * away / 4)], -1)
+        features = torch.stack(
+            [away.clamp(max=6), torch.exp(-away), torch.exp(-away * away), torch.exp(-away * away / 4)], -1
+        )
         return self.layers(features).permute(0, 3, 1, 2)
 
 
@@ -203,7 +214,9 @@ class VertexTokens(nn.Module):
         self.pairs = nn.ModuleList(Pairs(heads) for _ in range(layers))
         self.blocks = nn.ModuleList(Block(width, heads, offsets=True) for _ in range(layers))
 
-    def forward(self, contour: Tensor, n_contour: Tensor, inner: Tensor, n_inner: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+    def forward(
+        self, contour: Tensor, n_contour: Tensor, inner: Tensor, n_inner: Tensor
+    ) -> tuple[Tensor, Tensor, Tensor]:
         """Returns tokens (B, N + M, W), their places (B, N + M, 2) and the even length (B,)."""
         even = even_length(contour, n_contour, n_inner)
         away = distance_to_contour(inner, contour, n_contour) / even.unsqueeze(1)
@@ -223,9 +236,12 @@ class Moves(nn.Module):
     def __init__(self, width: int = 64, heads: int = 4, layers: int = 4):
         super().__init__()
         self.vertices = VertexTokens(width, heads, layers)
-        self.head = nn.Sequential(nn.LayerNorm(width), nn.Linear(width, width), nn.GELU(approximate="tanh"), nn.Linear(width, 2))
+        self.head = nn.Sequential(
+            nn.LayerNorm(width), nn.Linear(width, width), nn.GELU(approximate="tanh"), nn.Linear(width, 2)
+        )
 
     def forward(self, contour: Tensor, n_contour: Tensor, inner: Tensor, n_inner: Tensor) -> Tensor:
+        """inner (B, M, 2), where they are. Returns (B, M, 2)."""
         x, _, even = self.vertices(contour, n_contour, inner, n_inner)
         return inner + self.head(x[:, contour.shape[1] :]) * even.reshape(-1, 1, 1)
 
@@ -238,14 +254,15 @@ class NN3(nn.Module):
         self.vertices = VertexTokens(width, heads, layers)
         self.edge, self.vertex = nn.Linear(2 * width, width), nn.Linear(width, width)
         self.element = nn.Linear(6, width)
-        self.head = nn.Sequential(nn.GELU(approximate="tanh"), nn.Linear(width, 32), nn.GELU(approximate="tanh"), nn.Linear(32, 2))
+        self.head = nn.Sequential(
+            nn.GELU(approximate="tanh"), nn.Linear(width, 32), nn.GELU(approximate="tanh"), nn.Linear(32, 2)
+        )
 
     def forward(self, contour: Tensor, n_contour: Tensor, inner: Tensor, n_inner: Tensor, entries: Tensor) -> Tensor:
         """entries: (P, 3) int64, an example, a contour edge of it and a vertex (inner ones from N on). Returns (P, 2).
 
         Only entries whose element is possible are asked for: visibility is theirs by being in the list.
         """
-        n = contour.shape[1]
         x, at, even = self.vertices(contour, n_contour, inner, n_inner)
         row, first, third = entries.unbind(1)
         second = torch.where(first + 1 < n_contour[row], first + 1, torch.zeros_like(first))

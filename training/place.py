@@ -1,4 +1,5 @@
-"""NN2's own placements of the examples, on which its further passes are trained: ``python -m training.place [--shards N]``.
+"""NN2's own placements of the examples, on which its further passes are trained: ``python -m training.place [--shards
+N]``.
 
 Uses the exported scores (``onnx_models/nn2_scores.onnx``). Contours where not all vertices found a place are NaN.
 """
@@ -19,6 +20,7 @@ BATCH = 500
 
 
 def main() -> None:
+    """Place the inner vertices of validation and training examples."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--shards", type=int, help="how many of the training shards")
     arguments = parser.parse_args()

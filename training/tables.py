@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from .meshing import area2, crosses, delaunay, force_edge, legalise, qualities
+from .meshing import area2, crosses, delaunay, force_edge, is_within, legalise, qualities
 
 
 @njit(cache=True)
@@ -14,13 +14,8 @@ def is_element(points, n_contour, n, a, b, v):
     if area2(points, a, b, v) <= 1e-10:
         return False
     for u in range(n):
-        if u != a and u != b and u != v:
-            if (
-                area2(points, a, b, u) >= -1e-12
-                and area2(points, b, v, u) >= -1e-12
-                and area2(points, v, a, u) >= -1e-12
-            ):
-                return False
+        if u not in (a, b, v) and is_within(points, a, b, v, u):
+            return False
     for k in range(n_contour):
         m = (k + 1) % n_contour
         if crosses(points, a, v, k, m) or crosses(points, b, v, k, m):
@@ -32,8 +27,8 @@ def is_element(points, n_contour, n, a, b, v):
 def connection_table(points, n_contour, n, table):
     """Fill ``table`` (N_C, n, 2) with (q_worst, q_mean), 0 where the element is not possible. Returns success.
 
-    points: (n, 2) float64, the contour's vertices first. The element is forced and the rest of the cavity is meshed by the
-    constrained Delaunay triangulation of the same vertices.
+    points: (n, 2) float64, the contour's vertices first. The element is forced and the rest of the cavity is meshed
+    by the constrained Delaunay triangulation of the same vertices.
     """
     table[:] = 0.0
     base = np.empty((n, n), np.int64)
@@ -44,7 +39,7 @@ def connection_table(points, n_contour, n, table):
     for i in range(n_contour):
         a, b = i, (i + 1) % n_contour
         for v in range(n):
-            if v == a or v == b or not is_element(points, n_contour, n, a, b, v):
+            if v in (a, b) or not is_element(points, n_contour, n, a, b, v):
                 continue
             if base[a, b] == v:
                 table[i, v, 0], table[i, v, 1] = own

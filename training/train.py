@@ -23,6 +23,7 @@ DEVICE = "cuda" if torch.cuda.is_available() else "cpu"
 
 
 def tensor(array: np.ndarray) -> Tensor:
+    """An array on the device, int64 or float32."""
     kind = torch.int64 if array.dtype.kind == "i" else torch.float32
     return torch.as_tensor(np.ascontiguousarray(array), dtype=kind, device=DEVICE)
 
@@ -126,6 +127,7 @@ def validate(role: str, net: torch.nn.Module, examples: Examples) -> float:
 
 
 def main() -> None:
+    """Train the role of the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("role", choices=LOSSES)
     parser.add_argument("--steps", type=int, help="length of the schedule (default: the configuration's)")

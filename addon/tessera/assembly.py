@@ -13,9 +13,9 @@ def mesh_cells(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Put every cell through the scheme.
 
-    points: (p, 2); cells: (c, N) int, counter-clockwise vertex numbers, padded with -1, 3 to 16 each; edge_length: (c,).
-    Returns vertices (n, 2), the points first and then the inner vertices; triangles (m, 3) int64; the cell of each
-    triangle (m,); fallbacks of each cell (c,).
+    points: (p, 2); cells: (c, N) int, counter-clockwise vertex numbers, padded with -1, 3 to 16 each; edge_length:
+    (c,). Returns vertices (n, 2), the points first and then the inner vertices; triangles (m, 3) int64; the cell of
+    each triangle (m,); fallbacks of each cell (c,).
     """
     n_contour = (cells >= 0).sum(axis=1)
     meshes = mesh_contours(points[np.maximum(cells, 0)], n_contour, edge_length, watch)

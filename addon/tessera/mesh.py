@@ -13,8 +13,9 @@ from .quality import element_quality
 class Report:
     """What there is to know of a mesh.
 
-    edge_lengths: shortest, mean and longest edge, in the input's unit; seconds: of each stage (of the whole batch, where
-    the mesh was made in one); fallbacks: elements that were chosen by their own quality, as NN3's table led nowhere.
+    edge_lengths: shortest, mean and longest edge, in the input's unit; seconds: of each stage (of the whole batch,
+    where the mesh was made in one); fallbacks: elements that were chosen by their own quality, as NN3's table led
+    nowhere.
     """
 
     n_vertices: int

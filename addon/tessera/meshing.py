@@ -28,9 +28,9 @@ def mesh(loops: Sequence[ArrayLike], edge_length: float, *, sizing: None = None,
     """Mesh one domain: the planar region that closed curves bound.
 
     loops: (k, 2) arrays, in any winding and order; by the even-odd rule outer contours (holes are not meshed yet).
-    edge_length: the target, in the loops' unit. boundary: "resample" places vertices on the given polylines at the target
-    edge length, keeping their corners; "keep" keeps exactly the given vertices and adds none on the contour. sizing: for
-    later; only None is accepted.
+    edge_length: the target, in the loops' unit. boundary: "resample" places vertices on the given polylines at the
+    target edge length, keeping their corners; "keep" keeps exactly the given vertices and adds none on the contour.
+    sizing: for later; only None is accepted.
 
     Raises ContourError, whose ``reason`` is a short word, for input that cannot be meshed.
     """
@@ -59,7 +59,10 @@ def mesh_contour(points: ArrayLike, edge_length: float) -> Mesh:
     contour = clean_loop(points)
     n = len(contour)
     if n > LARGEST_CONTOUR:
-        message = f"The contour has {n} edges, the scheme alone meshes 3 to {LARGEST_CONTOUR}. Use tessera.mesh, which divides it."
+        message = (
+            f"The contour has {n} edges, the scheme alone meshes 3 to {LARGEST_CONTOUR}. "
+            "Use tessera.mesh, which divides it."
+        )
         raise ContourError("too-many-edges", message)
     watch = Stopwatch()
     n_contour = np.array([n])
@@ -79,11 +82,15 @@ def mesh_contour(points: ArrayLike, edge_length: float) -> Mesh:
 def check_edge_length(edge_length: float) -> None:
     """Raise ContourError "edge-length" unless the target is a positive finite number."""
     if not (np.isscalar(edge_length) and np.isfinite(edge_length) and edge_length > 0):
-        message = f"The target edge length is {edge_length}; it must be a positive number. Give one in the curve's unit."
+        message = (
+            f"The target edge length is {edge_length}; it must be a positive number. Give one in the curve's unit."
+        )
         raise ContourError("edge-length", message)
 
 
-def mesh_domains(domains: Sequence[Sequence[ArrayLike]], edge_length: float, boundary: str) -> list[Mesh | ContourError]:
+def mesh_domains(
+    domains: Sequence[Sequence[ArrayLike]], edge_length: float, boundary: str
+) -> list[Mesh | ContourError]:
     """Mesh many domains as one batch: a Mesh, or the ContourError that it has, for each."""
     if boundary not in ("resample", "keep"):
         raise ValueError(f'boundary is "resample" or "keep", not {boundary!r}')
@@ -118,14 +125,15 @@ def checked_domain(loops: list[np.ndarray] | ContourError, edge_length: float) -
     nested = nesting(loops)
     if len(nested.holes):
         place = tuple(map(float, loops[nested.holes[0]][0]))
-        message = f"Contour {nested.holes[0]} is a hole, near ({place[0]:g}, {place[1]:g}). Holes are not meshed yet: remove it."
+        where = f"near ({place[0]:g}, {place[1]:g})"
+        message = f"Contour {nested.holes[0]} is a hole, {where}. Holes are not meshed yet: remove it."
         return ContourError("hole", message, place)
     wanted = sum(signed_area(loop) for loop in loops) / (np.sqrt(3) / 4 * edge_length**2)
     wanted += sum(np.linalg.norm(loop - np.roll(loop, 1, axis=0), axis=1).sum() for loop in loops) / edge_length
     if wanted > MOST_TRIANGLES:
         message = (
-            f"The target edge length {edge_length:g} asks for about {wanted:.2g} triangles, the most is {MOST_TRIANGLES:,}. "
-            f"Use {edge_length * np.sqrt(wanted / MOST_TRIANGLES) * 1.1:.2g} or more."
+            f"The target edge length {edge_length:g} asks for about {wanted:.2g} triangles, "
+            f"the most is {MOST_TRIANGLES:,}. Use {edge_length * np.sqrt(wanted / MOST_TRIANGLES) * 1.1:.2g} or more."
         )
         return ContourError("too-many-triangles", message)
     return loops

@@ -1,8 +1,8 @@
 """The networks: one ONNX session a role, and one function a role.
 
-All functions take transformed contours, (B, N, 2) with ``n_contour`` (B,) vertices each and padding after them. Contours of
-like size go through a network together; the size they are padded to depends on each contour alone, never on its
-neighbours in the batch, so that a contour's answer is the same in every batch.
+All functions take transformed contours, (B, N, 2) with ``n_contour`` (B,) vertices each and padding after them.
+Contours of like size go through a network together; the size they are padded to depends on each contour alone, never
+on its neighbours in the batch, so that a contour's answer is the same in every batch.
 """
 
 from __future__ import annotations
@@ -38,14 +38,20 @@ def count_inner_vertices(contour: np.ndarray, n_contour: np.ndarray, l_s: np.nda
     count = np.zeros(len(n_contour))
     for rows, n, _ in _groups(n_contour, np.zeros_like(n_contour), 1):
         (count[rows],) = session("nn1").run(
-            None, {"contour": _single(contour, rows, n), "n_contour": n_contour[rows], "l_s": l_s[rows].astype(np.float32)}
+            None,
+            {"contour": _single(contour, rows, n), "n_contour": n_contour[rows], "l_s": l_s[rows].astype(np.float32)},
         )
     # Rounded first: an answer on the border between two counts falls to the same side in every batch.
     return np.rint(np.round(count, 3)).astype(np.int64)
 
 
 def score_grid(
-    contour: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, l_s: np.ndarray, grid: np.ndarray, n_grid: np.ndarray
+    contour: np.ndarray,
+    n_contour: np.ndarray,
+    n_inner: np.ndarray,
+    l_s: np.ndarray,
+    grid: np.ndarray,
+    n_grid: np.ndarray,
 ) -> np.ndarray:
     """NN2: score of each grid point, its distance to the closest of the inner vertices in even edge lengths.
 

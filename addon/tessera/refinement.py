@@ -31,8 +31,8 @@ def refine(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Refine a mesh until its inner edges follow the sizing function.
 
-    vertices: (n, 2); triangles: (m, 3); sizing: (k, 2) points -> (k,) wanted edge lengths. Returns vertices, the old ones
-    first, triangles (t, 3), the old triangle that each is part of (t,), and for each of those the fallbacks (m,).
+    vertices: (n, 2); triangles: (m, 3); sizing: (k, 2) points -> (k,) wanted edge lengths. Returns vertices, the old
+    ones first, triangles (t, 3), the old triangle that each is part of (t,), and for each of those the fallbacks (m,).
     """
     parent = np.arange(len(triangles))
     fallbacks = np.zeros(len(triangles), dtype=np.int64)
@@ -41,7 +41,9 @@ def refine(
         ends = vertices[edges]
         length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         segments = np.rint(length / sizing(ends.mean(axis=1))).astype(np.int64)
-        segments = np.where(inner & ~_beside_slivers(vertices, triangles, edges), np.clip(segments, 1, MOST_SEGMENTS), 1)
+        segments = np.where(
+            inner & ~_beside_slivers(vertices, triangles, edges), np.clip(segments, 1, MOST_SEGMENTS), 1
+        )
         if segments.max(initial=1) == 1:
             break
         points, cells = _sub_contours(vertices, triangles, edges, segments)
@@ -60,7 +62,9 @@ def inner_edges(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     n = int(triangles.max(initial=0)) + 1
     edges = unique_edges(triangles)
     sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    count = np.bincount(np.searchsorted(edges[:, 0] * n + edges[:, 1], sides[:, 0] * n + sides[:, 1]), minlength=len(edges))
+    count = np.bincount(
+        np.searchsorted(edges[:, 0] * n + edges[:, 1], sides[:, 0] * n + sides[:, 1]), minlength=len(edges)
+    )
     return edges, count == 2
 
 

@@ -27,7 +27,9 @@ class ContourMeshes:
     fallbacks: np.ndarray  # (B,) int32, elements that NN3's table had no say in
 
 
-def mesh_contours(contours: np.ndarray, n_contour: np.ndarray, edge_length: np.ndarray, watch: Stopwatch) -> ContourMeshes:
+def mesh_contours(
+    contours: np.ndarray, n_contour: np.ndarray, edge_length: np.ndarray, watch: Stopwatch
+) -> ContourMeshes:
     """Mesh contours, each at its own target edge length.
 
     contours: (B, N, 2) float64, simple and counter-clockwise, n_contour (B,) vertices each, 3 to 16; edge_length: (B,).

@@ -9,7 +9,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Stars:
-    """Rings of S vertices: centre (S,) vertex numbers, ring (S, R) neighbours counter-clockwise, padded, n_ring (S,)."""
+    """Rings of S vertices: centre (S,) vertices, ring (S, R) neighbours counter-clockwise, padded, n_ring (S,)."""
 
     centre: np.ndarray
     ring: np.ndarray
@@ -21,7 +21,7 @@ class Stars:
 
 
 def find_stars(triangles: np.ndarray, free: np.ndarray, largest: int) -> Stars:
-    """The stars of the ``free`` (n,) vertices, which must be off the boundary; those of over ``largest`` edges left out.
+    """The stars of the ``free`` (n,) vertices, which are off the boundary; those of over ``largest`` edges left out.
 
     triangles: (m, 3) counter-clockwise.
     """
@@ -51,7 +51,9 @@ def independent_sets(stars: Stars, n_vertices: int) -> list[np.ndarray]:
     Each round takes the stars whose number, scrambled, is the largest among their neighbours left.
     """
     # A fixed scrambling: neighbours in space are often neighbours in number, which would make long chains.
-    rank = np.argsort(np.argsort((np.arange(n_vertices, dtype=np.uint64) * np.uint64(11400714819323198485)), kind="stable"))
+    rank = np.argsort(
+        np.argsort((np.arange(n_vertices, dtype=np.uint64) * np.uint64(11400714819323198485)), kind="stable")
+    )
     row_of = np.full(n_vertices, -1)
     row_of[stars.centre] = np.arange(len(stars.centre))
     neighbour = row_of[stars.ring]

@@ -16,6 +16,7 @@ class Stopwatch:
 
     @contextmanager
     def __call__(self, stage: str) -> Iterator[None]:
+        """Time what is done in a ``with`` block."""
         start, outer, self._inside = time.perf_counter(), self._inside, 0.0
         try:
             yield

@@ -1,13 +1,13 @@
 """Feature transformation: Procrustes superimposition of contours onto the regular polygon (paper, section 2.2).
 
-A contour and the regular polygon of as many vertices in the unit circle are centred and normalised; the rotation and the
-scale that bring the contour closest to the polygon are applied. In the plane, with vertices as complex numbers, the SVD of
-the paper reduces to one inner product ``c = <polygon, contour>``: the optimal rotation is ``conj(c) / |c|`` and the trace
-of the singular values (reflections excluded) is ``|c|``.
+A contour and the regular polygon of as many vertices in the unit circle are centred and normalised; the rotation and
+the scale that bring the contour closest to the polygon are applied. In the plane, with vertices as complex numbers,
+the SVD of the paper reduces to one inner product ``c = <polygon, contour>``: the optimal rotation is ``conj(c) /
+|c|`` and the trace of the singular values (reflections excluded) is ``|c|``.
 
-A cyclic shift of the polygon is a rotation of it, so every choice of "which contour vertex meets the polygon's first one"
-has the same residual. So that the transformation does not depend on where the user's curve starts, the contour is first
-shifted to begin at the vertex farthest from its centre.
+A cyclic shift of the polygon is a rotation of it, so every choice of "which contour vertex meets the polygon's first
+one" has the same residual. So that the transformation does not depend on where the user's curve starts, the contour
+is first shifted to begin at the vertex farthest from its centre.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-# A contour that hardly resembles the polygon (a spiral, a horseshoe) has a small |c|; scaled by it, it would shrink to a
-# speck that no network has seen.
+# A contour that hardly resembles the polygon (a spiral, a horseshoe) has a small |c|; scaled by it, it would shrink
+# to a speck that no network has seen.
 SMALLEST_RESEMBLANCE = 0.5
 
 
@@ -50,7 +50,8 @@ class Transformation:
 def superimpose(contours: np.ndarray, n_contour: np.ndarray) -> Transformation:
     """Find the transformation of each contour onto the regular polygon.
 
-    contours: (B, N, 2) float64, counter-clockwise, the first n_contour (B,) vertices of each count and are not all alike.
+    contours: (B, N, 2) float64, counter-clockwise, the first n_contour (B,) vertices of each count and are not all
+    alike.
     """
     centre = np.zeros(len(contours), dtype=np.complex128)
     factor = np.ones(len(contours), dtype=np.complex128)

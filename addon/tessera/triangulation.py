@@ -84,8 +84,9 @@ def triangulate(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, 
     points: (B, V, 2) float64, each row n_contour vertices of a simple counter-clockwise polygon, then n_inner distinct
     vertices strictly inside, then padding of any value; n_contour, n_inner: (B,) int. connect: NN3, a function of
     points, n_contour and n_inner of contours in the same form, and of which entries are possible elements (B, F, V)
-    bool, F = max n_contour -> (B, F, V, 2) tables of (q_worst, q_mean); other entries are not looked at. It is also asked for sub-contours, whose edges can be as many as the contour has vertices. Raises ValueError where
-    no element is possible, which is so only if a contour is not as described; other such contours may go unnoticed.
+    bool, F = max n_contour -> (B, F, V, 2) tables of (q_worst, q_mean); other entries are not looked at. It is also
+    asked for sub-contours, whose edges can be as many as the contour has vertices. Raises ValueError where no element
+    is possible, which is so only if a contour is not as described; other such contours may go unnoticed.
     """
     n_rows, width = points.shape[:2]
     contours = Contours(

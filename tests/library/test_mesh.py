@@ -66,7 +66,13 @@ def test_refinement_reaches_the_inside_of_a_coarse_kept_boundary():
 
 
 def test_a_batch_is_each_domain_alone():
-    domains = [[SQUARE], [star(7)], [np.array([[0, 0], [1, 1], [2, 2]])], [circle(60), circle(60) + [4, 0]], [LETTER_E / 5]]
+    domains = [
+        [SQUARE],
+        [star(7)],
+        [np.array([[0, 0], [1, 1], [2, 2]])],
+        [circle(60), circle(60) + [4, 0]],
+        [LETTER_E / 5],
+    ]
     together = tessera.mesh_many(domains, 0.15)
     assert isinstance(together[2], tessera.ContourError) and together[2].reason == "zero-area"
     for domain, mesh in zip(domains, together, strict=True):
