@@ -167,7 +167,7 @@ def jitter(contour, inner, n_contour, n_inner, noise, even):
 
 @njit(cache=True)
 def elements_of(contour, inner, n_contour, n_inner, out, ok):
-    """Constrained Delaunay elements of each example into ``out`` (n, T, 3), unused rows -1; success into ``ok`` (n,)."""
+    """Constrained Delaunay elements of each example into ``out`` (n, T, 3), unused rows -1, success into ``ok``."""
     out[:] = -1
     most = contour.shape[1]
     for row in range(len(n_contour)):
