@@ -6,9 +6,7 @@ import sys
 
 import bpy
 
-from ..tessera.errors import ContourError
-from .meshing import default_edge_length, mesh_outline
-from .reading import READABLE, read_outline
+from .kinds import READABLE
 
 # What a file may well hold besides outlines, such as a camera's path: passed over, unless it was asked for by name.
 _NOT_OUTLINES = frozenset({"open", "not-planar"})
@@ -31,15 +29,19 @@ def run(arguments: list[str]) -> int:
 
 def _mesh_one(obj: bpy.types.Object, options: argparse.Namespace) -> str:
     """Mesh one object and print its line. Returns "meshed", "passed over" or "failed"."""
+    from . import meshing  # here, so that enabling the add-on does not load the mesher
+
     try:
-        outline = read_outline(obj, bpy.context.evaluated_depsgraph_get())
-        edge_length = default_edge_length([outline]) if options.edge_length is None else options.edge_length
-        meshed = mesh_outline(obj, outline, edge_length, options.boundary)
-    except ContourError as error:
-        if error.reason in _NOT_OUTLINES and options.objects is None:
-            print(f"{obj.name}: passed over ({error.reason}): {error}")
+        outline = meshing.read(obj, bpy.context.evaluated_depsgraph_get())
+        edge_length = options.edge_length
+        if edge_length is None:
+            edge_length = meshing.default_edge_length([outline])
+        meshed = meshing.mesh(obj, outline, edge_length, options.boundary)
+    except meshing.Failure as failure:
+        if failure.reason in _NOT_OUTLINES and options.objects is None:
+            print(f"{obj.name}: passed over ({failure.reason}): {failure}")
             return "passed over"
-        print(f"{obj.name}: failed ({error.reason}): {error}", file=sys.stderr)
+        print(f"{obj.name}: failed ({failure.reason}): {failure}", file=sys.stderr)
         return "failed"
     meshed.write()
     report = meshed.report

@@ -2,8 +2,8 @@
 
 import bpy
 
+from .kinds import READABLE
 from .operators.mesh_curve import TESSERA_OT_mesh_curve
-from .reading import READABLE
 
 
 def _draw_convert(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

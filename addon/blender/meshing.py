@@ -1,11 +1,15 @@
-"""Object to mesh, without a change to the scene: what the operator and the command line share."""
+"""Object to mesh, without a change to the scene: what the operator and the command line share.
+
+Importing this loads the mesher and onnxruntime; it is imported when there is something to mesh.
+"""
 
 from dataclasses import dataclass
 
 import bpy
 import numpy as np
 
-from .reading import Outline
+from .. import tessera
+from .reading import Outline, read_outline
 from .writing import write_mesh
 
 # The default target edge length, as a fraction of the longer side of the largest outline's bounding box.
@@ -19,11 +23,28 @@ class Meshed:
     obj: bpy.types.Object
     vertices: np.ndarray
     triangles: np.ndarray
-    report: object
+    report: tessera.Report
 
     def write(self) -> bpy.types.Object:
         """Make the mesh object."""
         return write_mesh(self.obj, self.vertices, self.triangles)
+
+
+class Failure(Exception):
+    """An object's ContourError, in the words that the user sees. `reason` is the ContourError's."""
+
+    def __init__(self, obj: bpy.types.Object, error: tessera.ContourError) -> None:
+        kind = "Text" if obj.type == "FONT" else "Curve"
+        super().__init__(f"{kind} '{obj.name}': {error}")
+        self.reason = error.reason
+
+
+def read(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Outline:
+    """The object's outline. Raises Failure."""
+    try:
+        return read_outline(obj, depsgraph)
+    except tessera.ContourError as error:
+        raise Failure(obj, error) from error
 
 
 def default_edge_length(outlines: list[Outline]) -> float:
@@ -31,9 +52,10 @@ def default_edge_length(outlines: list[Outline]) -> float:
     return float(f"{DEFAULT_FRACTION * max(outline.size for outline in outlines):.2g}")
 
 
-def mesh_outline(obj: bpy.types.Object, outline: Outline, edge_length: float, boundary: str) -> Meshed:
-    """Mesh one object's outline as one domain. Raises the mesher's ContourError."""
-    from .. import tessera  # loads onnxruntime and the networks: only when there is something to mesh
-
-    mesh = tessera.mesh(outline.loops, edge_length, boundary=boundary.lower())
-    return Meshed(obj, outline.plane.lift(mesh.vertices), mesh.triangles, mesh.report)
+def mesh(obj: bpy.types.Object, outline: Outline, edge_length: float, boundary: str) -> Meshed:
+    """Mesh one object's outline as one domain; boundary: "resample" or "keep". Raises Failure."""
+    try:
+        made = tessera.mesh(outline.loops, edge_length, boundary=boundary)
+    except tessera.ContourError as error:
+        raise Failure(obj, error) from error
+    return Meshed(obj, outline.plane.lift(made.vertices), made.triangles, made.report)

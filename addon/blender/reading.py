@@ -11,8 +11,6 @@ from ..tessera.errors import ContourError
 from .outline import outline_edges, polylines
 from .plane import Plane, fit_plane
 
-READABLE = frozenset({"CURVE", "FONT"})
-
 # Modifiers that Blender always applies to control points, whether or not "Apply on Spline" is set.
 _ON_SPLINE = frozenset({"HOOK", "SOFT_BODY", "MESH_DEFORM"})
 

@@ -16,6 +16,7 @@ def curve(name, loop, cyclic=True):
     bpy.context.scene.collection.objects.link(bpy.data.objects.new(name, data))
 
 
+bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
 curve("Outline", [(0, 0), (2, 0), (2, 1), (1, 0.5), (0, 1)])
 curve("Path", [(0, 3), (1, 3), (1, 4)], cyclic=False)
 curve("Bow tie", [(3, 0), (4, 1), (4, 0), (3, 1)])

@@ -1,10 +1,13 @@
 """Object > Convert > Mesh by Tessera."""
 
+from typing import TYPE_CHECKING
+
 import bpy
 
-from ...tessera.errors import ContourError
-from ..meshing import Meshed, default_edge_length, mesh_outline
-from ..reading import READABLE, Outline, read_outline
+from ..kinds import READABLE
+
+if TYPE_CHECKING:
+    from ..meshing import Meshed
 
 
 class TESSERA_OT_mesh_curve(bpy.types.Operator):
@@ -47,35 +50,29 @@ class TESSERA_OT_mesh_curve(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Mesh everything, and only then make objects: a failure leaves the scene as it was."""
+        from .. import meshing  # here, so that enabling the add-on does not load the mesher
+
         objects = [obj for obj in context.selected_objects if obj.type in READABLE]
         if not objects:
             self.report({"ERROR"}, "No curve or text is selected. Select what is to be meshed")
             return {"CANCELLED"}
+        depsgraph = context.evaluated_depsgraph_get()
         try:
-            outlines = [self._read(obj, context) for obj in objects]
+            outlines = [meshing.read(obj, depsgraph) for obj in objects]
             if not self.properties.is_property_set("edge_length"):
-                self.edge_length = default_edge_length(outlines)
-            meshed = [self._mesh(obj, outline) for obj, outline in zip(objects, outlines, strict=True)]
-        except _Failure as failure:
+                self.edge_length = meshing.default_edge_length(outlines)
+            meshed = [
+                meshing.mesh(obj, outline, self.edge_length, self.boundary.lower())
+                for obj, outline in zip(objects, outlines, strict=True)
+            ]
+        except meshing.Failure as failure:
             self.report({"ERROR"}, str(failure))
             return {"CANCELLED"}
         _show(context, [m.write() for m in meshed], objects)
         self._summarise(meshed)
         return {"FINISHED"}
 
-    def _read(self, obj: bpy.types.Object, context: bpy.types.Context) -> Outline:
-        try:
-            return read_outline(obj, context.evaluated_depsgraph_get())
-        except ContourError as error:
-            raise _Failure(obj, error) from error
-
-    def _mesh(self, obj: bpy.types.Object, outline: Outline) -> Meshed:
-        try:
-            return mesh_outline(obj, outline, self.edge_length, self.boundary)
-        except ContourError as error:
-            raise _Failure(obj, error) from error
-
-    def _summarise(self, meshed: list[Meshed]) -> None:
+    def _summarise(self, meshed: "list[Meshed]") -> None:
         for m in meshed:
             for warning in m.report.warnings:
                 self.report({"WARNING"}, f"{m.obj.name}: {warning}")
@@ -83,14 +80,6 @@ class TESSERA_OT_mesh_curve(bpy.types.Operator):
         worst = min(m.report.q_worst for m in meshed)
         mean = sum(m.report.q_mean * len(m.triangles) for m in meshed) / triangles
         self.report({"INFO"}, f"{triangles} triangles, quality {mean:.3f} on average, {worst:.3f} at worst")
-
-
-class _Failure(Exception):
-    """One object's ContourError, in the words of the one report that the user sees."""
-
-    def __init__(self, obj: bpy.types.Object, error: ContourError) -> None:
-        kind = "Text" if obj.type == "FONT" else "Curve"
-        super().__init__(f"{kind} '{obj.name}': {error}")
 
 
 def _show(context: bpy.types.Context, made: list[bpy.types.Object], sources: list[bpy.types.Object]) -> None:
