@@ -34,7 +34,7 @@ def main() -> None:
     BUILD.mkdir(exist_ok=True)
 
     panels = {}
-    for title, make, edge_length in (("logo", logo, 0.06), ("airfoil", airfoil, 0.025), ("text", words, 0.05)):
+    for title, make, edge_length in (("logo", logo, 0.06), ("airfoil", airfoil, 0.035), ("text", words, 0.036)):
         curves = make()
         bpy.context.view_layer.update()
         start = time.perf_counter()

@@ -23,14 +23,15 @@ def main() -> None:
         bpy.context.collection.objects.link(words)
         bpy.context.view_layer.objects.active = words
         words.select_set(True)
-        view.overlay.show_wireframes = True
-        view.overlay.wireframe_threshold = 1.0
         bpy.ops.view3d.view_axis(type="TOP")
         view.region_3d.view_perspective = "ORTHO"
         bpy.ops.view3d.view_selected()
         view.region_3d.view_distance *= 0.5
+        bpy.ops.ed.undo_push(message="Add Text")  # what Adjust Last Operation goes back to
         bpy.ops.tessera.mesh_curve("INVOKE_DEFAULT", True)
         words.hide_set(True)
+        bpy.context.object.show_wire = bpy.context.object.show_all_edges = True
+        bpy.context.object.select_set(False)
     middle = {"x": area.x + area.width // 2, "y": area.y + area.height // 4}
     window.event_simulate(type="MOUSEMOVE", value="NOTHING", **middle)
     window.event_simulate(type="F9", value="PRESS", **middle)
