@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .edges import unique_edges
 from .quality import element_quality
 
 
@@ -60,10 +61,3 @@ def make_mesh(
         seconds=dict(seconds or {}),
     )
     return Mesh(vertices, np.ascontiguousarray(triangles, dtype=np.int32), report)
-
-
-def unique_edges(triangles: np.ndarray) -> np.ndarray:
-    """Each edge of triangles (m, 3) once, its smaller vertex first: (e, 2)."""
-    edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1).astype(np.int64)
-    key = np.unique(edges[:, 0] * (int(edges.max(initial=0)) + 1) + edges[:, 1])
-    return np.stack(np.divmod(key, int(edges.max(initial=0)) + 1), axis=1)

@@ -15,7 +15,7 @@ from .division import divide
 from .errors import ContourError
 from .mesh import Mesh, make_mesh
 from .placement import MOST_INNER
-from .refinement import off_boundary, refine
+from .refinement import refine
 from .relaxation import relax
 from .scheme import LARGEST_CONTOUR, join_vertices, mesh_contours
 from .sizing import grade_from_edges
@@ -147,10 +147,11 @@ def _mesh_polygons(
         division = divide(polygons, edge_length)
         target = mean_edge_lengths(division.points, division.cells)
     vertices, triangles, cell, fallbacks = mesh_cells(division.points, division.cells, target, watch)
-    vertices, triangles, parent, more = refine(vertices, triangles, grade_from_edges(polygons, edge_length), watch)
-    with watch("relaxation"):
-        vertices = relax(vertices, triangles, off_boundary(triangles, len(vertices)))
     owner = division.owner[cell]
+    sizing = grade_from_edges(polygons, edge_length)
+    vertices, triangles, parent, more = refine(vertices, triangles, owner, sizing, watch)
+    with watch("relaxation"):
+        vertices = relax(vertices, triangles, owner[parent])
     counts = np.bincount(division.owner, fallbacks, minlength=len(polygons))
     counts += np.bincount(owner, more, minlength=len(polygons))
     return vertices, triangles, owner[parent], counts

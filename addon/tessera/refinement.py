@@ -13,7 +13,7 @@ from collections.abc import Callable
 import numpy as np
 
 from .assembly import mean_edge_lengths, mesh_cells
-from .mesh import unique_edges
+from .edges import inner_edges
 from .quality import element_quality
 from .relaxation import relax
 from .stopwatch import Stopwatch
@@ -27,12 +27,13 @@ Sizing = Callable[[np.ndarray], np.ndarray]
 
 
 def refine(
-    vertices: np.ndarray, triangles: np.ndarray, sizing: Sizing, watch: Stopwatch
+    vertices: np.ndarray, triangles: np.ndarray, domain: np.ndarray, sizing: Sizing, watch: Stopwatch
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Refine a mesh until its inner edges follow the sizing function.
 
-    vertices: (n, 2); triangles: (m, 3); sizing: (k, 2) points -> (k,) wanted edge lengths. Returns vertices, the old
-    ones first, triangles (t, 3), the old triangle that each is part of (t,), and for each of those the fallbacks (m,).
+    vertices: (n, 2); triangles: (m, 3); domain: (m,) int of each triangle; sizing: (k, 2) points -> (k,) wanted edge
+    lengths. Returns vertices, the old ones first, triangles (t, 3), the old triangle that each is part of (t,), and for
+    each of those the fallbacks (m,).
     """
     parent = np.arange(len(triangles))
     fallbacks = np.zeros(len(triangles), dtype=np.int64)
@@ -52,28 +53,12 @@ def refine(
         np.add.at(fallbacks, parent[split], fell)
         parent = np.concatenate([parent[~split], parent[split][owner]])
         triangles = np.concatenate([triangles[~split], new])
+        # Only domains that were split, so that each goes the same way as it would alone.
+        of = domain[parent]
+        changed = np.isin(of, of[-len(new) :])
         with watch("relaxation"):
-            vertices = relax(vertices, triangles, off_boundary(triangles, len(vertices)), passes=1)
+            vertices = relax(vertices, triangles[changed], of[changed], passes=1)
     return vertices, triangles, parent, fallbacks
-
-
-def inner_edges(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The edges (e, 2), smaller vertex first, and whether each lies between two triangles (e,)."""
-    n = int(triangles.max(initial=0)) + 1
-    edges = unique_edges(triangles)
-    sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    count = np.bincount(
-        np.searchsorted(edges[:, 0] * n + edges[:, 1], sides[:, 0] * n + sides[:, 1]), minlength=len(edges)
-    )
-    return edges, count == 2
-
-
-def off_boundary(triangles: np.ndarray, n_vertices: int) -> np.ndarray:
-    """(n,) which vertices no boundary edge has."""
-    edges, inner = inner_edges(triangles)
-    free = np.ones(n_vertices, dtype=bool)
-    free[edges[~inner]] = False
-    return free
 
 
 def _beside_slivers(vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray) -> np.ndarray:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from . import networks
+from .edges import off_boundary
 from .stars import Stars, find_stars, independent_sets
 from .transform import superimpose
 
@@ -19,10 +20,15 @@ PASSES = 4
 _GAIN = 2e-3  # in worst and mean quality added: less is not worth a move
 
 
-def relax(vertices: np.ndarray, triangles: np.ndarray, free: np.ndarray, passes: int = PASSES) -> np.ndarray:
-    """Better places for the ``free`` (n,) vertices of a mesh: (n, 2). Boundary vertices must not be free."""
-    stars = find_stars(triangles, free, LARGEST_STAR)
-    sets = [stars.rows(rows) for rows in independent_sets(stars, len(vertices))]
+def relax(vertices: np.ndarray, triangles: np.ndarray, domain: np.ndarray, passes: int = PASSES) -> np.ndarray:
+    """Better places for the vertices of a mesh that are off its boundary: (n, 2); the others stay.
+
+    vertices: (n, 2); triangles: (m, 3); domain: (m,) int, the domain of each triangle: the vertices of each are
+    numbered by themselves, so that a domain is relaxed alike alone and in a batch.
+    """
+    stars = find_stars(triangles, off_boundary(triangles, len(vertices)), LARGEST_STAR)
+    number = _numbers_by_domain(triangles, domain, len(vertices))
+    sets = [stars.rows(rows) for rows in independent_sets(stars, number)]
     vertices = vertices.copy()
     disturbed = np.ones(len(vertices), dtype=bool)
     for _ in range(passes):
@@ -35,6 +41,17 @@ def relax(vertices: np.ndarray, triangles: np.ndarray, free: np.ndarray, passes:
                 vertices[stars.centre[better]], moved[stars.centre] = places[better], better
         disturbed = moved
     return vertices
+
+
+def _numbers_by_domain(triangles: np.ndarray, domain: np.ndarray, n_vertices: int) -> np.ndarray:
+    """(n,) place of each vertex among the vertices of its domain."""
+    of = np.full(n_vertices, -1)
+    of[triangles] = domain[:, None]
+    order = np.argsort(of, kind="stable")
+    first = np.searchsorted(of[order], of[order])
+    number = np.empty(n_vertices, dtype=np.int64)
+    number[order] = np.arange(n_vertices) - first
+    return number
 
 
 def _better_places(vertices: np.ndarray, stars: Stars) -> tuple[np.ndarray, np.ndarray]:

@@ -45,16 +45,15 @@ def find_stars(triangles: np.ndarray, free: np.ndarray, largest: int) -> Stars:
     return Stars(centre[start], ring, count)
 
 
-def independent_sets(stars: Stars, n_vertices: int) -> list[np.ndarray]:
+def independent_sets(stars: Stars, number: np.ndarray) -> list[np.ndarray]:
     """Rows of stars in sets, no two centres of a set neighbours; every star is in one set.
 
-    Each round takes the stars whose number, scrambled, is the largest among their neighbours left.
+    number (n,) int of each vertex, different for neighbours. Each round takes the stars whose number, scrambled, is the
+    largest among their neighbours left.
     """
-    # A fixed scrambling: neighbours in space are often neighbours in number, which would make long chains.
-    rank = np.argsort(
-        np.argsort((np.arange(n_vertices, dtype=np.uint64) * np.uint64(11400714819323198485)), kind="stable")
-    )
-    row_of = np.full(n_vertices, -1)
+    # Neighbours in space are often neighbours in number, which would make long chains. An odd factor keeps them apart.
+    rank = (number.astype(np.uint64) * np.uint64(11400714819323198485) >> np.uint64(1)).astype(np.int64)
+    row_of = np.full(len(number), -1)
     row_of[stars.centre] = np.arange(len(stars.centre))
     neighbour = row_of[stars.ring]
     neighbour[np.arange(stars.ring.shape[1]) >= stars.n_ring[:, None]] = -1

@@ -41,9 +41,9 @@ Why it always ends with a valid mesh, whatever the tables are:
    with elements of positive area, into which inner vertices can be put one after the other, splitting one element, or
    two if they lie on an edge. Its element on the facet is possible.
 4. So every sub-contour always gets at least one element: if the table has no acceptable entry (finite, q_worst above
-   0) for any possible element, the one of best quality (ties by index), counted as a fallback. A full triangulation
-   has exactly N_C + 2 N_I - 2 elements and those left to make go down with each one, so the recursion ends; elements
-   that do not overlap and reach this number cover the contour once and use every vertex.
+   0, the element not flat) for any possible element, the one of best quality (ties by index), counted as a fallback. A
+   full triangulation has exactly N_C + 2 N_I - 2 elements and those left to make go down with each one, so the
+   recursion ends; elements that do not overlap and reach this number cover the contour once and use every vertex.
 
 Contours of a batch share nothing but array operations that treat each alone, and triangles are sorted in the end, so a
 mesh does not depend on the batch that its contour is in.
@@ -63,6 +63,8 @@ Connect = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 _BITS = 20
 # Weight of the element's own quality beside the table's entry.
 _OWN_WEIGHT = 0.05
+# Flatter elements, on vertices that are collinear but for rounding, are made only where there is no other.
+_FLAT = 1e-5
 # Where contours are divided by their number of vertices into groups of a level.
 _SIZES = (5, 7, 10, 14, 20)
 # Size in bytes of the sign tensor that is held at a time.
@@ -172,13 +174,13 @@ def _scores(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Possible entries as integers, the better the larger and above 0: (B, F, V) int32.
 
-    An entry is acceptable if its q_worst is finite and positive; others are at most 0. Rows without any are returned
-    too (s,): there every possible entry counts by its own quality.
+    An entry is acceptable if its q_worst is finite and positive, and its element not flat; others are at most 0. Rows
+    without any are returned too (s,): there every possible entry counts by its own quality.
     """
     row, facet, vertex = np.nonzero(possible)
     own = _facet_quality(points, starts)[row, facet, vertex]
     worst, mean = np.nan_to_num(tables[row, facet, vertex], nan=0, posinf=0, neginf=0).T
-    acceptable = worst > 0
+    acceptable = (worst > 0) & (own > _FLAT)
     stuck = np.bincount(row[acceptable], minlength=len(possible)) == 0
     value = np.minimum(worst, own) + np.clip(mean, 0, 1) + _OWN_WEIGHT * own
     value = np.where(stuck[row], own, np.where(acceptable, value, -1))

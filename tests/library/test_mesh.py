@@ -26,7 +26,7 @@ def test_any_simple_polygon_is_meshed(polygon, placement, triangles, boundary):
     check_mesh(mesh.vertices, mesh.triangles, [polygon], keep=boundary == "keep")
 
 
-@pytest.mark.parametrize("edge_length", [0.5, 0.2, 0.05])
+@pytest.mark.parametrize("edge_length", [0.15, 0.05])
 @pytest.mark.parametrize("polygon", [SQUARE, circle(100), LETTER_E / 7, letter_s()], ids=["square", "circle", "E", "S"])
 def test_meshes_are_even(polygon, edge_length):
     mesh = tessera.mesh([polygon], edge_length)
@@ -79,7 +79,7 @@ def test_a_batch_is_each_domain_alone():
         if isinstance(mesh, tessera.Mesh):
             alone = tessera.mesh(domain, 0.15)
             np.testing.assert_array_equal(alone.triangles, mesh.triangles)
-            np.testing.assert_allclose(alone.vertices, mesh.vertices, atol=1e-5)
+            np.testing.assert_array_equal(alone.vertices, mesh.vertices)
 
 
 def test_report():
