@@ -16,7 +16,7 @@ from .errors import ContourError
 from .mesh import Mesh, make_mesh
 from .placement import MOST_INNER
 from .refinement import refine
-from .relaxation import relax
+from .remeshing import improve
 from .scheme import LARGEST_CONTOUR, join_vertices, mesh_contours
 from .sizing import grade_from_edges
 from .stopwatch import Stopwatch
@@ -150,11 +150,11 @@ def _mesh_polygons(
     owner = division.owner[cell]
     sizing = grade_from_edges(polygons, edge_length)
     vertices, triangles, parent, more = refine(vertices, triangles, owner, sizing, watch)
-    with watch("relaxation"):
-        vertices = relax(vertices, triangles, owner[parent])
     counts = np.bincount(division.owner, fallbacks, minlength=len(polygons))
     counts += np.bincount(owner, more, minlength=len(polygons))
-    return vertices, triangles, owner[parent], counts
+    vertices, triangles, owner, again = improve(vertices, triangles, owner[parent], watch)
+    counts[: len(again)] += again
+    return vertices, triangles, owner, counts
 
 
 def _parts(
