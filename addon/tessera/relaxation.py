@@ -20,17 +20,25 @@ PASSES = 4
 _GAIN = 2e-3  # in worst and mean quality added: less is not worth a move
 
 
-def relax(vertices: np.ndarray, triangles: np.ndarray, domain: np.ndarray, passes: int = PASSES) -> np.ndarray:
+def relax(
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    domain: np.ndarray,
+    passes: int = PASSES,
+    disturbed: np.ndarray | None = None,
+) -> np.ndarray:
     """Better places for the vertices of a mesh that are off its boundary: (n, 2); the others stay.
 
     vertices: (n, 2); triangles: (m, 3); domain: (m,) int, the domain of each triangle: the vertices of each are
-    numbered by themselves, so that a domain is relaxed alike alone and in a batch.
+    numbered by themselves, so that a domain is relaxed alike alone and in a batch. disturbed: (n,) bool, vertices near
+    which there is something to relax; all, if not given.
     """
     stars = find_stars(triangles, off_boundary(triangles, len(vertices)), LARGEST_STAR)
     number = _numbers_by_domain(triangles, domain, len(vertices))
     sets = [stars.rows(rows) for rows in independent_sets(stars, number)]
     vertices = vertices.copy()
-    disturbed = np.ones(len(vertices), dtype=bool)
+    if disturbed is None:
+        disturbed = np.ones(len(vertices), dtype=bool)
     for _ in range(passes):
         moved = np.zeros(len(vertices), dtype=bool)
         for independent in sets:

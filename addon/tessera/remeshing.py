@@ -34,25 +34,31 @@ def improve(
         vertices = relax(vertices, triangles, domain)
     active = np.ones(len(domain), dtype=bool)
     for _ in range(ROUNDS):
-        vertices, new, of, homes, fell = _remesh(vertices, triangles[active], domain[active], watch)
+        vertices, new, of, replaced, homes, fell = _remesh(vertices, triangles[active], domain[active], watch)
         triangles, domain = np.concatenate([triangles[~active], new]), np.concatenate([domain[~active], of])
         np.add.at(fallbacks, homes, fell)
         active = np.isin(domain, homes)
         if not active.any():
             break
+        disturbed = np.zeros(len(vertices), dtype=bool)
+        disturbed[replaced] = True
         with watch("relaxation"):
-            vertices = relax(vertices, triangles[active], domain[active], passes=2)
+            vertices = relax(vertices, triangles, domain, disturbed=disturbed)
     return vertices, triangles, domain, fallbacks
 
 
 def _remesh(
     vertices: np.ndarray, triangles: np.ndarray, domain: np.ndarray, watch: Stopwatch
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Mesh poor cavities again, once: vertices, triangles, their domains; domain and fallbacks of each better one."""
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Mesh poor cavities again, once.
+
+    Returns vertices, triangles and their domains; then, of the cavities that this made better, the elements' vertices,
+    and the domain and the fallbacks of each.
+    """
     quality = element_quality(vertices, triangles)
     contours, cavity = _contours(triangles, _cavities(triangles, quality, off_boundary(triangles, len(vertices))))
     if not len(contours):
-        return vertices, triangles, domain, domain[:0], domain[:0]
+        return vertices, triangles, domain, domain[:0], domain[:0], domain[:0]
     taken = np.flatnonzero(cavity >= 0)
     points, new, owner, fell = mesh_cells(vertices, contours, mean_edge_lengths(vertices, contours), watch)
     before = _worst_and_mean(quality[taken], cavity[taken], len(contours)).sum(axis=0)
@@ -63,7 +69,7 @@ def _remesh(
     stay, come = ~((cavity >= 0) & better[cavity]), better[owner]
     triangles = np.concatenate([triangles[stay], new[come]])
     domain = np.concatenate([domain[stay], home[owner[come]]])
-    return points, triangles, domain, home[better], fell[better]
+    return points, triangles, domain, new[come].ravel(), home[better], fell[better]
 
 
 def _cavities(triangles: np.ndarray, quality: np.ndarray, free: np.ndarray) -> np.ndarray:
