@@ -18,11 +18,12 @@ from tessera.division import divide
 from tessera.stopwatch import Stopwatch
 from tessera.transform import superimpose
 
+from .wireframes import LINE, QUALITY
+
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 FOLDER = Path(__file__).resolve().parents[1] / "docs" / "images"
-INK = "#1d3557"
 
 
 def leaf(n: int = 160) -> np.ndarray:
@@ -34,11 +35,11 @@ def leaf(n: int = 160) -> np.ndarray:
 
 def draw_polygons(ax: Axes, polygons: list[np.ndarray], colours: np.ndarray | None = None, **style) -> None:
     """Filled polygons with thin edges."""
-    collection = PolyCollection(polygons, edgecolors=INK, linewidths=0.5, **style)
+    collection = PolyCollection(polygons, edgecolors=LINE, linewidths=0.5, **style)
     if colours is not None:
         collection.set_array(colours)
-        collection.set_cmap("YlGnBu")
-        collection.set_clim(0.2, 1.15)
+        collection.set_cmap(QUALITY)
+        collection.set_clim(0.4, 1)
     ax.add_collection(collection)
     ax.autoscale()
     ax.set_aspect("equal")
@@ -65,7 +66,7 @@ def draw_scores(ax: Axes, contour: np.ndarray) -> None:
     scores = networks.score_grid(transformed, n_contour, count, l_s, grid, np.array([grid.shape[1]]))
     inside = placement.is_inside(grid, transformed, n_contour)
     ax.contourf(x, y, np.where(inside, scores, np.nan).reshape(x.shape), levels=18, cmap="YlGnBu_r")
-    ax.plot(*np.vstack([transformed[0], transformed[0, :1]]).T, "-o", color=INK, ms=3, lw=1)
+    ax.plot(*np.vstack([transformed[0], transformed[0, :1]]).T, "-o", color=LINE, ms=3, lw=1)
     ax.plot(*places[0].T, "o", color="#e63946", ms=5)
     ax.set_aspect("equal")
     ax.axis("off")
@@ -89,7 +90,7 @@ def way_of_the_data() -> None:
     ]
     titles += ["NN3, triangulation: cells meshed", "NN2 again: the mesh, no seams"]
     for ax, title in zip(axes.flat, titles, strict=True):
-        ax.set_title(title, fontsize=11, color=INK)
+        ax.set_title(title, fontsize=11, color=LINE)
     draw_polygons(axes[0, 0], [curve], facecolors="#f1faee")
     draw_polygons(axes[0, 1], [boundary], facecolors="#f1faee")
     axes[0, 1].plot(*boundary.T, "o", color="#e63946", ms=2.5)
