@@ -71,9 +71,9 @@ def main() -> None:
         [
             "# The whole scheme against the reference mesher",
             "",
-            f"{count} held-out sector contours (seed {seed}), l_s 0.3 to 1; Gmsh {reference.VERSION}, contour edges frozen,",
-            "sizes as in `training/reference.py`. ē = mean of (q_reference − q) / q_reference: negative is better than",
-            "the reference; ± is its standard error. The networks alone, no smoothing after them. Made by",
+            f"{count} held-out sector contours (seed {seed}), l_s 0.3 to 1; Gmsh {reference.VERSION}, contour edges",
+            "frozen, sizes as in `training/reference.py`. ē = mean of (q_reference − q) / q_reference: negative is",
+            "better than the reference; ± is its standard error. The networks alone, no smoothing after them. Made by",
             "`make evaluate`.",
             "",
             table(n_contour, (theirs - ours) / theirs, np.abs(meshes.wanted - inner), meshes.fallbacks),
