@@ -131,8 +131,8 @@ def export(role: str) -> None:
 def main() -> None:
     """Export the roles of the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("roles", nargs="*", default=list(ROLES), choices=[*ROLES, []])
-    for role in parser.parse_args().roles:
+    parser.add_argument("roles", nargs="*", metavar="ROLE", help=f"of {', '.join(ROLES)} (default: all)")
+    for role in parser.parse_args().roles or ROLES:
         export(role)
 
 

@@ -55,7 +55,7 @@ def mesh_contour(points: ArrayLike, edge_length: float) -> Mesh:
 
     points: (N_C, 2). The mesh's first N_C vertices are the contour's, counter-clockwise. Raises ContourError.
     """
-    check_edge_length(edge_length)
+    edge_length = checked_edge_length(edge_length)
     contour = clean_loop(points)
     n = len(contour)
     if n > LARGEST_CONTOUR:
@@ -66,7 +66,7 @@ def mesh_contour(points: ArrayLike, edge_length: float) -> Mesh:
         raise ContourError("too-many-edges", message)
     watch = Stopwatch()
     n_contour = np.array([n])
-    meshes = mesh_contours(contour[None], n_contour, np.array([float(edge_length)]), watch)
+    meshes = mesh_contours(contour[None], n_contour, np.array([edge_length]), watch)
     (vertices,) = join_vertices(contour[None], n_contour, meshes.inner, meshes.n_inner)
     warnings = ()
     if meshes.n_inner[0] < meshes.wanted[0]:
@@ -79,13 +79,18 @@ def mesh_contour(points: ArrayLike, edge_length: float) -> Mesh:
     )
 
 
-def check_edge_length(edge_length: float) -> None:
-    """Raise ContourError "edge-length" unless the target is a positive finite number."""
-    if not (np.isscalar(edge_length) and np.isfinite(edge_length) and edge_length > 0):
+def checked_edge_length(edge_length: float) -> float:
+    """The target as a float; raises ContourError "edge-length" unless it is a positive finite number."""
+    try:
+        value = float(edge_length)
+    except (TypeError, ValueError, OverflowError):
+        value = np.nan
+    if not (np.isfinite(value) and value > 0):
         message = (
             f"The target edge length is {edge_length}; it must be a positive number. Give one in the curve's unit."
         )
         raise ContourError("edge-length", message)
+    return value
 
 
 def mesh_domains(
@@ -94,7 +99,7 @@ def mesh_domains(
     """Mesh many domains as one batch: a Mesh, or the ContourError that it has, for each."""
     if boundary not in ("resample", "keep"):
         raise ValueError(f'boundary is "resample" or "keep", not {boundary!r}')
-    check_edge_length(edge_length)
+    edge_length = checked_edge_length(edge_length)
     watch = Stopwatch()
     with watch("contours"):
         results = [checked_domain(result, edge_length) for result in clean_domains(domains)]
@@ -128,12 +133,17 @@ def checked_domain(loops: list[np.ndarray] | ContourError, edge_length: float) -
         where = f"near ({place[0]:g}, {place[1]:g})"
         message = f"Contour {nested.holes[0]} is a hole, {where}. Holes are not meshed yet: remove it."
         return ContourError("hole", message, place)
-    wanted = sum(signed_area(loop) for loop in loops) / (np.sqrt(3) / 4 * edge_length**2)
-    wanted += sum(np.linalg.norm(loop - np.roll(loop, 1, axis=0), axis=1).sum() for loop in loops) / edge_length
+    area = sum(signed_area(loop) for loop in loops)
+    length = sum(float(np.linalg.norm(loop - np.roll(loop, 1, axis=0), axis=1).sum()) for loop in loops)
+    # Equilateral triangles, and one on each edge of the boundary: area / l² + length / l, both divided before they are
+    # multiplied, so that no length is too small or too large for it.
+    area *= 4 / 3**0.5
+    wanted = area / edge_length / edge_length + length / edge_length
     if wanted > MOST_TRIANGLES:
+        smallest = (length + (length**2 + 4 * MOST_TRIANGLES * area) ** 0.5) / (2 * MOST_TRIANGLES)
         message = (
             f"The target edge length {edge_length:g} asks for about {wanted:.2g} triangles, "
-            f"the most is {MOST_TRIANGLES:,}. Use {edge_length * np.sqrt(wanted / MOST_TRIANGLES) * 1.1:.2g} or more."
+            f"the most is {MOST_TRIANGLES:,}. Use {1.1 * smallest:.2g} or more."
         )
         return ContourError("too-many-triangles", message)
     return loops

@@ -48,8 +48,8 @@ def find_stars(triangles: np.ndarray, free: np.ndarray, largest: int) -> Stars:
 def independent_sets(stars: Stars, number: np.ndarray) -> list[np.ndarray]:
     """Rows of stars in sets, no two centres of a set neighbours; every star is in one set.
 
-    number (n,) int of each vertex, different for neighbours. Each round takes the stars whose number, scrambled, is the
-    largest among their neighbours left.
+    number (n,) int of each vertex, different for neighbours. A set takes the stars whose number, scrambled, is the
+    largest among their neighbours left, then those left that have no neighbour in it, until nothing more fits.
     """
     # Neighbours in space are often neighbours in number, which would make long chains. An odd factor keeps them apart.
     rank = (number.astype(np.uint64) * np.uint64(11400714819323198485) >> np.uint64(1)).astype(np.int64)
@@ -57,12 +57,16 @@ def independent_sets(stars: Stars, number: np.ndarray) -> list[np.ndarray]:
     row_of[stars.centre] = np.arange(len(stars.centre))
     neighbour = row_of[stars.ring]
     neighbour[np.arange(stars.ring.shape[1]) >= stars.n_ring[:, None]] = -1
-    left = np.ones(len(stars.centre), dtype=bool)
-    sets = []
+    own = rank[stars.centre]
+    left, sets = np.ones(len(stars.centre), dtype=bool), []
     while left.any():
-        own = np.where(left, rank[stars.centre], -1)
-        around = np.where(neighbour >= 0, own[neighbour], -1).max(axis=1)
-        chosen = left & (own > around)
+        chosen, fits = np.zeros_like(left), left.copy()
+        while fits.any():
+            around = np.where((neighbour >= 0) & fits[neighbour], own[neighbour], -1).max(axis=1)
+            new = fits & (own > around)
+            chosen |= new
+            fits &= ~new
+            fits[neighbour[new][neighbour[new] >= 0]] = False
         sets.append(np.flatnonzero(chosen))
         left &= ~chosen
     return sets
