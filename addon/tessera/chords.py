@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .predicates import orientation, segments_cross
+from .diagonals import balanced_diagonal
 
 # Chord spacing goes from the boundary's to the target edge length by so much per unit of length.
 GRADING = 0.3
@@ -58,7 +58,7 @@ def choose_chords(corners: np.ndarray, size: np.ndarray, edge_length: np.ndarray
         start[open_rows], end[open_rows] = first, second
         open_rows = open_rows[first < 0]
     for row in open_rows:  # no Python loop in ordinary cases
-        start[row], end[row] = _any_diagonal(corners[row, : size[row]])
+        start[row], end[row] = balanced_diagonal(corners[row, : size[row]])
     start, end = np.minimum(start, end), np.maximum(start, end)
     rows = np.arange(len(size))
     length = np.linalg.norm(corners[rows, end] - corners[rows, start], axis=1)
@@ -254,29 +254,3 @@ def _clearance_cost(batch: _Batch, row: np.ndarray, start: np.ndarray, end: np.n
     blocked = np.any(apart & (crossing | along_it), axis=1)
     narrow = np.maximum(0.6 - relative, 0) / 0.6
     return np.where(safe_from_vertices & ~blocked, 4.0 * narrow**2 + 2.0 * narrow, np.inf)
-
-
-def _any_diagonal(polygon: np.ndarray) -> tuple[int, int]:
-    """A diagonal of a simple polygon (n, 2), n >= 4, by exact predicates; there always is one.
-
-    v is the leftmost (then lowest) vertex, which is strictly convex, u and w its neighbours. If uw is no diagonal,
-    other vertices lie in the triangle uvw, and v sees the one of them that is farthest from uw: anything in between
-    would have an end still farther.
-    """
-    n = len(polygon)
-    v = int(np.lexsort((polygon[:, 1], polygon[:, 0]))[0])
-    u, w = (v - 1) % n, (v + 1) % n
-    pu, pv, pw = polygon[[u, v, w]]
-    within = np.logical_and.reduce([orientation(p, q, polygon) >= 0 for p, q in ((pu, pv), (pv, pw), (pw, pu))])
-    within[[u, v, w]] = False
-    if not within.any():
-        return u, w
-    candidates = np.nonzero(within)[0]
-    offset, base = polygon[candidates] - pw, pu - pw
-    distance = base[0] * offset[:, 1] - base[1] * offset[:, 0]
-    # Rounding may confuse nearly equal distances, so each is checked, the farthest first.
-    edges = np.arange(n)
-    for candidate in candidates[np.argsort(-distance, kind="stable")]:
-        if not segments_cross(pv, polygon[candidate], polygon, polygon[(edges + 1) % n]).any():
-            return v, int(candidate)
-    raise AssertionError("a simple polygon has a diagonal")

@@ -12,6 +12,8 @@ from .predicates import orientation
 
 # Points closer than this share of the loop's size are one point, and a loop thinner than it has no area.
 TOLERANCE = 1e-12
+# The squares of lengths, and products of them, must neither overflow nor vanish.
+SMALLEST_SIZE, LARGEST_COORDINATE = 1e-100, 1e100
 
 
 @dataclass(frozen=True)
@@ -34,7 +36,7 @@ def clean_loop(points: ArrayLike) -> np.ndarray:
     """A closed loop of points (k, 2) as a simple counter-clockwise polygon (n, 2) float64 of the same points.
 
     Consecutive repeated points are dropped, collinear ones stay. Raises ContourError "not-finite", "too-few-points",
-    "zero-area" or "self-intersection"; ValueError if the shape is not (k, 2).
+    "out-of-range", "zero-area" or "self-intersection"; ValueError if the shape is not (k, 2).
     """
     (result,) = clean_domains([[points]])
     if isinstance(result, ContourError):
@@ -72,7 +74,8 @@ def _checked(points: ArrayLike) -> np.ndarray:
     if points.size == 0:
         points = points.reshape(0, 2)
     if points.ndim != 2 or points.shape[1] != 2:
-        raise ValueError(f"a contour is an array of shape (k, 2), not {points.shape}")
+        message = f"a contour is an array of shape (k, 2), not {points.shape}"
+        raise ValueError(message + ("; a domain is a sequence of contours" if points.shape == (2,) else ""))
     bad = np.nonzero(~np.isfinite(points).all(axis=1))[0]
     if len(bad):
         message = f"Point {bad[0]} (counting from 0) of the contour has a coordinate that is not a finite number. "
@@ -93,6 +96,12 @@ def _without_repeats(points: np.ndarray) -> np.ndarray:
     if len(np.unique(points, axis=0)) < 3:
         message = "The contour has fewer than three distinct points. Add points, so that it encloses an area."
         raise ContourError("too-few-points", message, place)
+    if size < SMALLEST_SIZE or np.abs(points).max() > LARGEST_COORDINATE:
+        message = (
+            f"The contour is {size:.3g} long, and its largest coordinate is {np.abs(points).max():.3g}: more than "
+        )
+        message += f"{SMALLEST_SIZE:g} and less than {LARGEST_COORDINATE:g} can be computed with. Scale it."
+        raise ContourError("out-of-range", message, place)
     relative = (points - points[0]) / size
     far = relative[np.argmax(np.sum(relative**2, axis=1))]
     across = relative[:, 0] * far[1] - relative[:, 1] * far[0]

@@ -4,8 +4,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tessera.boundary import resample
-from tessera.chords import _any_diagonal, graded_spacing
+from tessera.chords import choose_chords, graded_spacing
 from tessera.contour import clean_loop
+from tessera.diagonals import any_diagonal, balanced_diagonal
 from tessera.division import divide
 from tests.library.polygons import (
     LETTER_E,
@@ -77,10 +78,19 @@ def test_the_last_resort_finds_a_diagonal(seed, n):
         np.roll(letter_s(), n, axis=0),
     ):
         polygon = clean_loop(polygon)
-        a, b = sorted(_any_diagonal(polygon))
-        assert 2 <= b - a <= len(polygon) - 2
-        parts = polygon[a : b + 1], np.concatenate([polygon[b:], polygon[: a + 1]])
-        assert all(polygon_is_simple(p) and polygon_area(p) > -1e-12 for p in parts)
+        for diagonal in (any_diagonal, balanced_diagonal):
+            a, b = sorted(diagonal(polygon))
+            assert 2 <= b - a <= len(polygon) - 2
+            parts = polygon[a : b + 1], np.concatenate([polygon[b:], polygon[: a + 1]])
+            assert all(polygon_is_simple(p) and polygon_area(p) > -1e-12 for p in parts)
+
+
+@pytest.mark.parametrize("hair", [[[0, 0], [1, 0], [0.5, 1e-9]], [[0, 0], [1, 0], [1, 1e-11], [0, 1e-11]]])
+def test_a_hair_is_cut_in_the_middle_too(hair):
+    loop = resample(np.array(hair), 1e-3)
+    chord = choose_chords(loop[None], np.array([len(loop)]), np.array([1e-3]))
+    behind = int(chord.end[0] - chord.start[0])
+    assert 0.2 * len(loop) < behind < 0.8 * len(loop)
 
 
 def test_batches_do_not_matter():
