@@ -43,12 +43,16 @@ def is_inside(points: np.ndarray, contour: np.ndarray, n_contour: np.ndarray) ->
 
 def distances_to_contour(points: np.ndarray, contour: np.ndarray, n_contour: np.ndarray) -> np.ndarray:
     """(B, M) distance of points (B, M, 2) to the closest edge of their contour."""
-    after = next_vertices(contour, n_contour)
+    edges = next_vertices(contour, n_contour) - contour
+    x, y = points[..., 0], points[..., 1]
     closest = np.full(points.shape[:2], np.inf)
     for k in range(contour.shape[1]):
-        start, edge = contour[:, None, k], after[:, None, k] - contour[:, None, k]
-        offset = points - start
-        t = (offset * edge).sum(-1) / np.maximum((edge * edge).sum(-1), 1e-300)
-        away = np.linalg.norm(offset - np.clip(t, 0, 1)[..., None] * edge, axis=-1)
-        closest = np.where((k < n_contour)[:, None], np.minimum(closest, away), closest)
-    return closest
+        (ax, ay), (ex, ey) = contour[:, k, :, None].swapaxes(0, 1), edges[:, k, :, None].swapaxes(0, 1)
+        px, py = x - ax, y - ay
+        along = np.clip((px * ex + py * ey) / np.maximum(ex * ex + ey * ey, 1e-300), 0, 1)
+        px -= along * ex
+        py -= along * ey
+        square = px * px + py * py
+        square[k >= n_contour] = np.inf
+        np.minimum(closest, square, out=closest)
+    return np.sqrt(closest)

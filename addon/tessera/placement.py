@@ -63,33 +63,38 @@ def place_by_scores(
 def _decode(
     contour: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, l_s: np.ndarray, resolution: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Choose the grid points of lowest score one after the other, each refined between its neighbours."""
+    """Score the admissible grid points, refine each between its neighbours, and choose among them."""
     even = even_lengths(contour, n_contour, n_inner)
     grid, spacing = _grid(contour, n_contour, resolution)
     admissible = is_inside(grid, contour, n_contour)
     admissible &= distances_to_contour(grid, contour, n_contour) > (_MARGIN * even)[:, None]
     n_grid = admissible.sum(axis=1)
-    order = np.argsort(~admissible, axis=1, kind="stable")
+    order = np.argsort(~admissible, axis=1, kind="stable")[:, : n_grid.max(initial=1)]
     packed = np.take_along_axis(grid, order[..., None], axis=1)
+    found = np.round(networks.score_grid(contour, n_contour, n_inner, l_s, packed, n_grid), 4)
     scores = np.full(grid.shape[:2], np.inf)
-    found = networks.score_grid(contour, n_contour, n_inner, l_s, packed, n_grid)
-    np.put_along_axis(scores, order, np.round(found, 4), axis=1)
+    np.put_along_axis(scores, order, found, axis=1)
+    offsets = np.take_along_axis(_refinement(scores, resolution), order[..., None], axis=1)
+    return _choose(packed + offsets * spacing[:, None, None], found, n_inner, even)
 
-    places = np.clip(grid + _refinement(scores, resolution) * spacing[:, None, None], -np.inf, np.inf)
-    index = np.arange(len(contour))
-    inner, count = np.zeros((len(contour), int(n_inner.max()), 2)), np.zeros_like(n_inner)
-    crowd = np.zeros_like(scores)
+
+def _choose(
+    places: np.ndarray, scores: np.ndarray, n_inner: np.ndarray, even: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Take the places (B, M, 2) of lowest score (B, M), one after the other and apart: (B, n, 2), and how many (B,)."""
+    # Contours that want many come first, so that those still choosing are a slice.
+    rows = np.argsort(-n_inner, kind="stable")
+    (x, y), cost, unit = np.moveaxis(places[rows], -1, 0), scores[rows], even[rows, None]
+    inner, count = np.zeros((len(rows), int(n_inner.max()), 2)), np.zeros_like(n_inner)
     for k in range(inner.shape[1]):
-        best = np.argmin(scores + crowd, axis=1)
-        fits = np.isfinite((scores + crowd)[index, best]) & (k < n_inner)
-        if not fits.any():
-            break
-        chosen = places[index, best]
-        inner[fits, k] = chosen[fits]
-        count += fits
-        away = np.linalg.norm(places - chosen[:, None], axis=-1) / even[:, None]
-        cost = np.where(away < _CLOSEST, np.inf, 2 * np.maximum(0, 1 - away / _CROWDED))
-        crowd = np.where(fits[:, None], crowd + cost, crowd)
+        m = np.count_nonzero(n_inner > k)
+        going, best = np.arange(m), cost[:m].argmin(axis=1)
+        fits = np.isfinite(cost[going, best])
+        at_x, at_y = x[going, best], y[going, best]
+        inner[rows[:m][fits], k] = np.stack([at_x, at_y], axis=1)[fits]
+        count[rows[:m][fits]] += 1
+        away = np.hypot(x[:m] - at_x[:, None], y[:m] - at_y[:, None]) / unit[:m]
+        cost[:m] += np.where(away < _CLOSEST, np.inf, 2 * np.maximum(0, 1 - away / _CROWDED))
     return inner, count
 
 
