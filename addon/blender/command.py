@@ -13,18 +13,26 @@ _NOT_OUTLINES = frozenset({"open", "not-planar"})
 
 
 def run(arguments: list[str]) -> int:
-    """Mesh the planar closed curves of the open file. Exit status: 0 all, 1 some failed or none was there, 2 usage."""
+    """Mesh the planar closed curves of the open file.
+
+    Exit status: 0 all, 1 some failed or none was there or the output was not written, 2 usage.
+    """
     try:
         options = _parser().parse_args(arguments)
+        output = _output(options.output)
         objects = _objects(options.objects)
     except SystemExit as usage:
         return int(usage.code or 0)
     outcomes = [_mesh_one(obj, options) for obj in objects]
-    if "meshed" in outcomes:
-        bpy.ops.wm.save_as_mainfile(filepath=os.path.abspath(options.output), check_existing=False)
-    else:
+    if "meshed" not in outcomes:
         print("tessera: nothing was meshed, and nothing written", file=sys.stderr)
-    return 0 if "meshed" in outcomes and "failed" not in outcomes else 1
+        return 1
+    try:
+        bpy.ops.wm.save_as_mainfile(filepath=output, check_existing=False)
+    except RuntimeError as error:
+        print(f"tessera: '{output}' was not written: {str(error).strip()}", file=sys.stderr)
+        return 1
+    return 1 if "failed" in outcomes else 0
 
 
 def _mesh_one(obj: bpy.types.Object, options: argparse.Namespace) -> str:
@@ -55,13 +63,22 @@ def _mesh_one(obj: bpy.types.Object, options: argparse.Namespace) -> str:
     return "meshed"
 
 
+def _output(path: str) -> str:
+    """The absolute path to write to. A folder that is not there is an error of usage, before anything is meshed."""
+    path = os.path.abspath(os.path.expanduser(path))
+    if os.path.isdir(path) or not os.path.isdir(os.path.dirname(path)):
+        print(f"tessera: '{path}' cannot be written: give a file in a folder that exists", file=sys.stderr)
+        raise SystemExit(2)
+    return path
+
+
 def _objects(names: list[str] | None) -> list[bpy.types.Object]:
     """The scene's curves and texts in the order of their names, or those named. A wrong name is an error of usage."""
     scene_objects = bpy.context.scene.objects
     if names is None:
         return sorted((obj for obj in scene_objects if obj.type in READABLE), key=lambda obj: obj.name)
     chosen = []
-    for name in names:
+    for name in dict.fromkeys(names):  # each once
         obj = scene_objects.get(name)
         if obj is None or obj.type not in READABLE:
             print(f"tessera: there is no curve or text named '{name}' in the scene", file=sys.stderr)

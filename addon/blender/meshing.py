@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 
 from .. import tessera
+from .plane import Plane
 from .reading import Outline, read_outline
 from .writing import write_mesh
 
@@ -58,4 +59,18 @@ def mesh(obj: bpy.types.Object, outline: Outline, edge_length: float, boundary: 
         made = tessera.mesh(outline.loops, edge_length, boundary=boundary)
     except tessera.ContourError as error:
         raise Failure(obj, error) from error
-    return Meshed(obj, outline.plane.lift(made.vertices), made.triangles, made.report)
+    vertices = outline.plane.lift(made.vertices)
+    if _lost_in_rounding(outline.plane, made, vertices):
+        message = (
+            "Triangles so small are lost in the single precision of Blender's meshes, so far from the object's origin. "
+            "Use a larger edge length, or Object > Set Origin > Origin to Geometry."
+        )
+        raise Failure(obj, tessera.ContourError("edge-length", message))
+    return Meshed(obj, vertices, made.triangles, made.report)
+
+
+def _lost_in_rounding(plane: Plane, made: tessera.Mesh, vertices: np.ndarray) -> bool:
+    """Whether elements that are no slivers lose their area when vertices (n, 3) are rounded to single precision."""
+    rounded = plane.flatten(vertices.astype(np.float32).astype(np.float64))
+    fat = tessera.element_quality(made.vertices, made.triangles) > 0.01
+    return bool((tessera.element_quality(rounded, made.triangles[fat]) <= 0).any())

@@ -70,9 +70,10 @@ def _closed_chains(points: np.ndarray, chains: list[tuple[np.ndarray, bool]]) ->
     closed_chains = []
     for number, (chain, closed) in enumerate(chains, start=1):
         if len(chain) < 3:
+            count = "1 point" if len(chain) == 1 else f"{len(chain)} points"
             raise ContourError(
                 "too-few-points",
-                f"Spline {number} has {len(chain)} points, and an outline needs at least 3. Add points, or delete it.",
+                f"Spline {number} has {count}, and an outline needs at least 3. Add points, or delete it.",
             )
         if not closed:
             first, last = points[chain[0]], points[chain[-1]]

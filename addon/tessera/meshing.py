@@ -131,7 +131,9 @@ def checked_domain(loops: list[np.ndarray] | ContourError, edge_length: float) -
     if len(nested.holes):
         place = tuple(map(float, loops[nested.holes[0]][0]))
         where = f"near ({place[0]:g}, {place[1]:g})"
-        message = f"Contour {nested.holes[0]} is a hole, {where}. Holes are not meshed yet: remove it."
+        message = (
+            f"Contour {nested.holes[0]} (counting from 0) is a hole, {where}. Holes are not meshed yet: remove it."
+        )
         return ContourError("hole", message, place)
     area = sum(signed_area(loop) for loop in loops)
     length = sum(float(np.linalg.norm(loop - np.roll(loop, 1, axis=0), axis=1).sum()) for loop in loops)

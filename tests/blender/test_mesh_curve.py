@@ -302,6 +302,7 @@ BOW_TIE = ((0, 0), (1, 1), (1, 0), (0, 1))
         ("planar", ((0, 0, 0), (1, 0, 0), (1, 1, 0.3), (0, 1, 0)), {"dimensions": "3D"}),
         ("cross", BOW_TIE, {}),
         ("2 points", SQUARE[:2], {}),
+        ("1 point,", SQUARE[:1], {}),
         ("line", ((0, 0, 0), (1, 0, 1), (3, 0, 3)), {"dimensions": "3D"}),
         ("area", ((0, 0), (1, 0), (3, 0)), {}),
         ("finite", (*SQUARE[:3], (0.0, math.nan)), {}),
@@ -316,6 +317,11 @@ def test_a_curve_that_cannot_be_meshed_is_one_clear_report(cause, loop, settings
 def test_an_edge_length_that_cannot_be_is_one_clear_report(edge_length):
     poly_curve(SQUARE, name="Broken")
     refuse("edge length", edge_length=edge_length)
+
+
+def test_triangles_that_single_precision_cannot_hold_are_one_clear_report():
+    poly_curve(np.array(SQUARE) * 4 + 1e7, name="Broken")
+    refuse("single precision", edge_length=0.1)
 
 
 def test_an_empty_text_and_a_hole_are_clear_reports():
