@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
+from mathutils import Vector
 
 from .. import tessera
 from .plane import Plane
@@ -32,11 +33,18 @@ class Meshed:
 
 
 class Failure(Exception):
-    """An object's ContourError, in the words that the user sees. `reason` is the ContourError's."""
+    """An object's ContourError, in the words that the user sees. `reason` is the ContourError's.
 
-    def __init__(self, obj: bpy.types.Object, error: tessera.ContourError) -> None:
+    The ContourError knows places in the outline's plane; with the plane, the message also says where in the world.
+    """
+
+    def __init__(self, obj: bpy.types.Object, error: tessera.ContourError, plane: Plane | None = None) -> None:
         kind = "Text" if obj.type == "FONT" else "Curve"
-        super().__init__(f"{kind} '{obj.name}': {error}")
+        message = f"{kind} '{obj.name}': {error}"
+        if plane is not None and error.place is not None:
+            world = obj.matrix_world @ Vector(plane.lift(np.array([error.place]))[0])
+            message += f" In the world, that is at ({world.x:.4g}, {world.y:.4g}, {world.z:.4g})."
+        super().__init__(message)
         self.reason = error.reason
 
 
@@ -58,7 +66,7 @@ def mesh(obj: bpy.types.Object, outline: Outline, edge_length: float, boundary: 
     try:
         made = tessera.mesh(outline.loops, edge_length, boundary=boundary)
     except tessera.ContourError as error:
-        raise Failure(obj, error) from error
+        raise Failure(obj, error, outline.plane) from error
     vertices = outline.plane.lift(made.vertices)
     if _lost_in_rounding(outline.plane, made, vertices):
         message = (

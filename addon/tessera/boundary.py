@@ -14,23 +14,20 @@ CORNER_ANGLE = np.radians(32.0)
 _PATIENCE = 12
 
 
-def resample(loop: np.ndarray, edge_length: float, corner_angle: float = CORNER_ANGLE) -> np.ndarray:
+def resample(loop: np.ndarray, edge_length: float) -> np.ndarray:
     """`resample_loops` for one simple counter-clockwise polygon (k, 2) -> (n, 2)."""
-    return resample_loops([loop], edge_length, corner_angle=corner_angle)[0]
+    return resample_loops([loop], edge_length)[0]
 
 
 def resample_loops(
-    loops: Sequence[np.ndarray],
-    edge_length: float | np.ndarray,
-    domain: np.ndarray | None = None,
-    corner_angle: float = CORNER_ANGLE,
+    loops: Sequence[np.ndarray], edge_length: float | np.ndarray, domain: np.ndarray | None = None
 ) -> list[np.ndarray]:
     """New vertices for simple counter-clockwise polygons (k, 2); they are simple and counter-clockwise again.
 
     edge_length: one, or one for each loop (m,). domain (m,) int: loops of one domain, which do not meet, do not meet
     afterwards either; without it each loop is a domain of its own.
 
-    The vertices lie on the given polyline. Corners (turning by more than `corner_angle`) stay; between two of them are
+    The vertices lie on the given polyline. Corners (turning by more than CORNER_ANGLE) stay; between two of them are
     as many edges as come nearest to `edge_length`, equally long along the polyline. A loop without corners starts at
     its leftmost vertex, wherever its list starts. Where even spacing would make the polygon meet itself, given vertices
     are inserted until it does not.
@@ -38,7 +35,7 @@ def resample_loops(
     length = np.array([len(loop) for loop in loops])
     edge_length = np.broadcast_to(np.asarray(edge_length, dtype=np.float64), len(loops))
     group = np.arange(len(loops)) if domain is None else np.asarray(domain)
-    points, breaks = _from_a_corner(np.concatenate(loops), length, corner_angle)
+    points, breaks = _from_a_corner(np.concatenate(loops), length)
     # One loop after the other: running sums must not depend on what else is in the batch.
     ends = np.cumsum(length)[:-1]
     positions = list(map(_even_spacing, np.split(points, ends), np.split(breaks, ends), edge_length))
@@ -69,12 +66,12 @@ def _neighbours(length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return before, after
 
 
-def _from_a_corner(points: np.ndarray, length: np.ndarray, corner_angle: float) -> tuple[np.ndarray, np.ndarray]:
+def _from_a_corner(points: np.ndarray, length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The loops' points turned to start at a corner, or at the leftmost vertex; and which of them end an arc."""
     before, after = _neighbours(length)
     came, goes = points - points[before], points[after] - points
     turning = np.arctan2(came[:, 0] * goes[:, 1] - came[:, 1] * goes[:, 0], np.sum(came * goes, axis=1))
-    corner = np.abs(turning) > corner_angle
+    corner = np.abs(turning) > CORNER_ANGLE
     loop = np.repeat(np.arange(len(length)), length)
     first = np.cumsum(length) - length
     start = np.lexsort((points[:, 1], points[:, 0], ~corner, loop))[first] - first

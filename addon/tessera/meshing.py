@@ -32,7 +32,8 @@ def mesh(loops: Sequence[ArrayLike], edge_length: float, *, sizing: None = None,
     target edge length, keeping their corners; "keep" keeps exactly the given vertices and adds none on the contour.
     sizing: for later; only None is accepted.
 
-    Raises ContourError, whose ``reason`` is a short word, for input that cannot be meshed.
+    Raises ContourError, whose ``reason`` is a short word, for input that cannot be meshed, and a plain ValueError for
+    what is no sequence of (k, 2) arrays of numbers.
     """
     if sizing is not None:
         raise NotImplementedError("sizing functions are not there yet: leave sizing=None for one target edge length")

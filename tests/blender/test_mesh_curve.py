@@ -339,6 +339,13 @@ def test_the_open_spline_is_named():
     assert "spline 2" in refuse("open", edge_length=0.2).lower()
 
 
+def test_the_place_of_a_crossing_is_the_worlds():
+    curve = poly_curve(BOW_TIE, name="Broken")
+    curve.matrix_basis = Matrix.Translation((5, -3, 2)) @ Euler((0, -math.pi / 2, 0)).to_matrix().to_4x4()
+    bpy.context.view_layer.update()
+    assert "world, that is at (5, -2.5, 2.5)" in refuse("cross", edge_length=0.2)
+
+
 def test_one_failure_among_several_makes_nothing():
     good = poly_curve(SQUARE, name="Good")
     broken = poly_curve(BOW_TIE, name="Broken")
