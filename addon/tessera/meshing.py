@@ -18,7 +18,7 @@ from .placement import MOST_INNER
 from .refinement import refine
 from .remeshing import improve
 from .scheme import LARGEST_CONTOUR, join_vertices, mesh_contours
-from .sizing import grade_from_edges
+from .sizing import LONG, grade_from_edges
 from .stopwatch import Stopwatch
 
 MOST_TRIANGLES = 5_000_000
@@ -116,7 +116,8 @@ def mesh_domains(
         of = domain[owner]
         fell = np.bincount(domain, fallbacks, minlength=len(results)).astype(int)
         for number, (part, elements) in zip(numbers, _parts(vertices, triangles, of, numbers), strict=True):
-            results[number] = make_mesh(part, elements, fallbacks=int(fell[number]))
+            warnings = long_edge_warnings(results[number], edge_length) if boundary == "keep" else ()
+            results[number] = make_mesh(part, elements, fallbacks=int(fell[number]), warnings=warnings)
     for number in numbers:
         results[number] = replace(results[number], report=replace(results[number].report, seconds=dict(watch.seconds)))
     return results
@@ -150,6 +151,18 @@ def checked_domain(loops: list[np.ndarray] | ContourError, edge_length: float) -
         )
         return ContourError("too-many-triangles", message)
     return loops
+
+
+def long_edge_warnings(loops: list[np.ndarray], edge_length: float) -> tuple[str, ...]:
+    """A warning where kept boundary edges are longer than the target, or none."""
+    lengths = np.concatenate([np.linalg.norm(loop - np.roll(loop, -1, axis=0), axis=1) for loop in loops])
+    long = np.count_nonzero(lengths > LONG * edge_length)
+    if not long:
+        return ()
+    return (
+        f"{long} of the {len(lengths)} kept boundary edges are longer than the target edge length {edge_length:g} "
+        f"(the longest is {lengths.max():g}), and so are the elements beside them: resample the boundary, or divide it",
+    )
 
 
 def _mesh_polygons(

@@ -8,6 +8,7 @@ import numpy as np
 
 # How fast the wanted length may fall off beside an edge that is longer than the target, in length per length.
 GRADATION = 0.5
+LONG = 1.5  # times the target edge length, from which an edge is longer than it could be
 _BLOCK = 1 << 22  # distances held at a time
 
 
@@ -19,7 +20,7 @@ def grade_from_edges(polygons: list[np.ndarray], edge_length: float) -> Callable
     starts = np.concatenate(polygons)
     ends = np.concatenate([np.roll(polygon, -1, axis=0) for polygon in polygons])
     lengths = np.linalg.norm(ends - starts, axis=1)
-    long = lengths > 1.5 * edge_length
+    long = lengths > LONG * edge_length
     starts, edges, lengths = starts[long], (ends - starts)[long], lengths[long]
 
     def sizing(points: np.ndarray) -> np.ndarray:

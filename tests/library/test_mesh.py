@@ -57,6 +57,11 @@ def test_several_outer_contours_are_one_mesh():
 def test_a_kept_boundary_of_long_edges_is_graded():
     mesh = tessera.mesh([SQUARE * [8, 1]], 0.1, boundary="keep")
     check_mesh(mesh.vertices, mesh.triangles, [SQUARE * [8, 1]])
+    assert "4 of the 4 kept boundary edges are longer" in mesh.report.warnings[0]
+
+
+def test_a_kept_boundary_at_the_target_has_no_warning():
+    assert tessera.mesh([circle(60)], 0.1, boundary="keep").report.warnings == ()
 
 
 def test_refinement_reaches_the_inside_of_a_coarse_kept_boundary():
