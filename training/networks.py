@@ -43,9 +43,7 @@ class Block(nn.Module):
         super().__init__()
         self.before, self.between = nn.LayerNorm(width), nn.LayerNorm(width)
         self.attention = Attention(width, heads, offsets)
-        self.perceptron = nn.Sequential(
-            nn.Linear(width, 2 * width), nn.GELU(approximate="tanh"), nn.Linear(2 * width, width)
-        )
+        self.perceptron = nn.Sequential(nn.Linear(width, 2 * width), nn.ReLU(), nn.Linear(2 * width, width))
 
     def forward(self, x: Tensor, y: Tensor | None, bias: Tensor, at: tuple[Tensor, Tensor] | None = None) -> Tensor:
         """Self-attention where y is None, else attention to y."""
@@ -133,9 +131,7 @@ class NN1(nn.Module):
     def __init__(self, width: int = 48, heads: int = 4, layers: int = 3):
         super().__init__()
         self.encoder = Encoder(width, heads, layers)
-        self.head = nn.Sequential(
-            nn.LayerNorm(width), nn.Linear(width, width), nn.GELU(approximate="tanh"), nn.Linear(width, 2)
-        )
+        self.head = nn.Sequential(nn.LayerNorm(width), nn.Linear(width, width), nn.ReLU(), nn.Linear(width, 2))
 
     def forward(self, contour: Tensor, n_contour: Tensor, l_s: Tensor) -> Tensor:
         """Returns (B,)."""
@@ -163,7 +159,7 @@ def distance_to_contour(points: Tensor, contour: Tensor, n_contour: Tensor) -> T
 class Scores(nn.Module):
     """NN2, where: scores of grid points, their distance to the closest of N_I inner vertices in even lengths."""
 
-    def __init__(self, width: int = 64, heads: int = 4, layers: int = 3, looks: int = 2):
+    def __init__(self, width: int = 32, heads: int = 4, layers: int = 2, looks: int = 2):
         super().__init__()
         self.encoder = Encoder(width, heads, layers)
         self.count = nn.Linear(3, width)
@@ -188,20 +184,11 @@ class Scores(nn.Module):
         return self.head(y)[..., 0]
 
 
-class Pairs(nn.Module):
-    """Attention bias of token pairs from their distance, in even lengths."""
-
-    def __init__(self, heads: int):
-        super().__init__()
-        self.layers = nn.Sequential(nn.Linear(4, 16), nn.GELU(approximate="tanh"), nn.Linear(16, heads))
-
-    def forward(self, at: Tensor, even: Tensor) -> Tensor:
-        """at (B, n, 2), even (B,). Returns (B, heads, n, n)."""
-        away = length(at.unsqueeze(2) - at.unsqueeze(1)) / even.reshape(-1, 1, 1)
-        features = torch.stack(
-            [away.clamp(max=6), torch.exp(-away), torch.exp(-away * away), torch.exp(-away * away / 4)], -1
-        )
-        return self.layers(features).permute(0, 3, 1, 2)
+def closeness(at: Tensor, even: Tensor) -> Tensor:
+    """(B, n, n, 6) how close tokens at places (B, n, 2) are, on several scales of the even length (B,)."""
+    away = length(at.unsqueeze(2) - at.unsqueeze(1)) / even.reshape(-1, 1, 1)
+    square = away * away
+    return torch.stack([away.clamp(max=6)] + [torch.exp(-square * rate) for rate in (0.06, 0.25, 0.6, 1.5, 4.0)], -1)
 
 
 class VertexTokens(nn.Module):
@@ -211,7 +198,7 @@ class VertexTokens(nn.Module):
         super().__init__()
         self.tokens = ContourTokens(width)
         self.embed = nn.Linear(5, width)
-        self.pairs = nn.ModuleList(Pairs(heads) for _ in range(layers))
+        self.pairs = nn.Linear(6, layers * heads)
         self.blocks = nn.ModuleList(Block(width, heads, offsets=True) for _ in range(layers))
 
     def forward(
@@ -225,20 +212,19 @@ class VertexTokens(nn.Module):
         at = torch.cat([contour, inner], 1)
         real = torch.cat([is_real(n_contour, contour.shape[1]), is_real(n_inner, inner.shape[1])], 1)
         bias = ((1 - real) * FAR).unsqueeze(1).unsqueeze(1)
-        for block, pairs in zip(self.blocks, self.pairs, strict=True):
-            x = block(x, None, bias + pairs(at, even), (at, at))
+        pairs = self.pairs(closeness(at, even)).permute(0, 3, 1, 2).chunk(len(self.blocks), 1)
+        for block, pair in zip(self.blocks, pairs, strict=True):
+            x = block(x, None, bias + pair, (at, at))
         return x, at, even
 
 
 class Moves(nn.Module):
     """NN2 again: new places of inner vertices that are all seen at once. (B, M, 2)."""
 
-    def __init__(self, width: int = 64, heads: int = 4, layers: int = 4):
+    def __init__(self, width: int = 32, heads: int = 4, layers: int = 3):
         super().__init__()
         self.vertices = VertexTokens(width, heads, layers)
-        self.head = nn.Sequential(
-            nn.LayerNorm(width), nn.Linear(width, width), nn.GELU(approximate="tanh"), nn.Linear(width, 2)
-        )
+        self.head = nn.Sequential(nn.LayerNorm(width), nn.Linear(width, width), nn.ReLU(), nn.Linear(width, 2))
 
     def forward(self, contour: Tensor, n_contour: Tensor, inner: Tensor, n_inner: Tensor) -> Tensor:
         """inner (B, M, 2), where they are. Returns (B, M, 2)."""
@@ -249,14 +235,12 @@ class Moves(nn.Module):
 class NN3(nn.Module):
     """How to connect: (q_worst, q_mean) of entries of the connection table."""
 
-    def __init__(self, width: int = 64, heads: int = 4, layers: int = 3):
+    def __init__(self, width: int = 32, heads: int = 4, layers: int = 2):
         super().__init__()
         self.vertices = VertexTokens(width, heads, layers)
         self.edge, self.vertex = nn.Linear(2 * width, width), nn.Linear(width, width)
         self.element = nn.Linear(6, width)
-        self.head = nn.Sequential(
-            nn.GELU(approximate="tanh"), nn.Linear(width, 32), nn.GELU(approximate="tanh"), nn.Linear(32, 2)
-        )
+        self.head = nn.Sequential(nn.ReLU(), nn.Linear(width, 32), nn.ReLU(), nn.Linear(32, 2))
 
     def forward(self, contour: Tensor, n_contour: Tensor, inner: Tensor, n_inner: Tensor, entries: Tensor) -> Tensor:
         """entries: (P, 3) int64, an example, a contour edge of it and a vertex (inner ones from N on). Returns (P, 2).
