@@ -22,6 +22,7 @@ from .sizing import LONG, grade_from_edges
 from .stopwatch import Stopwatch
 
 MOST_TRIANGLES = 5_000_000
+LOST_AREA = 0.1  # of a curve's area, from which a coarser boundary is warned of
 
 
 def mesh(loops: Sequence[ArrayLike], edge_length: float, *, sizing: None = None, boundary: str = "resample") -> Mesh:
@@ -116,7 +117,10 @@ def mesh_domains(
         of = domain[owner]
         fell = np.bincount(domain, fallbacks, minlength=len(results)).astype(int)
         for number, (part, elements) in zip(numbers, _parts(vertices, triangles, of, numbers), strict=True):
-            warnings = long_edge_warnings(results[number], edge_length) if boundary == "keep" else ()
+            if boundary == "keep":
+                warnings = long_edge_warnings(results[number], edge_length)
+            else:
+                warnings = lost_area_warnings(results[number], part, elements, edge_length)
             results[number] = make_mesh(part, elements, fallbacks=int(fell[number]), warnings=warnings)
     for number in numbers:
         results[number] = replace(results[number], report=replace(results[number].report, seconds=dict(watch.seconds)))
@@ -134,7 +138,8 @@ def checked_domain(loops: list[np.ndarray] | ContourError, edge_length: float) -
         place = tuple(map(float, loops[nested.holes[0]][0]))
         where = f"near ({place[0]:g}, {place[1]:g})"
         message = (
-            f"Contour {nested.holes[0]} (counting from 0) is a hole, {where}. Holes are not meshed yet: remove it."
+            f"A contour lies inside another, {where}: it is a hole, and holes are not meshed yet. "
+            "Leave it out, or cut the shape into parts without holes."
         )
         return ContourError("hole", message, place)
     area = sum(signed_area(loop) for loop in loops)
@@ -162,6 +167,22 @@ def long_edge_warnings(loops: list[np.ndarray], edge_length: float) -> tuple[str
     return (
         f"{long} of the {len(lengths)} kept boundary edges are longer than the target edge length {edge_length:g} "
         f"(the longest is {lengths.max():g}), and so are the elements beside them: resample the boundary, or divide it",
+    )
+
+
+def lost_area_warnings(
+    loops: list[np.ndarray], vertices: np.ndarray, triangles: np.ndarray, edge_length: float
+) -> tuple[str, ...]:
+    """A warning where the resampled boundary is too coarse for the curve's shape, or none."""
+    a, b, c = np.moveaxis(vertices[triangles], 1, 0)
+    u, v = b - a, c - a
+    covered = 0.5 * float(np.sum(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]))
+    changed = abs(covered / sum(signed_area(loop) for loop in loops) - 1)
+    if changed < LOST_AREA:
+        return ()
+    return (
+        f"the target edge length {edge_length:g} is too long for the curve's shape: the mesh's area differs by "
+        f"{100 * changed:.0f} %. Use a shorter one",
     )
 
 

@@ -40,6 +40,11 @@ def test_meshes_are_even(polygon, edge_length):
         assert 0.7 < mesh.report.edge_lengths[1] / edge_length < 1.3
 
 
+def test_a_target_too_long_for_the_shape_is_warned_of():
+    assert "too long" in tessera.mesh([circle(60)], 10).report.warnings[0]
+    assert tessera.mesh([circle(60)], 0.3).report.warnings == ()
+
+
 def test_winding_order_and_repeats_do_not_matter():
     once = tessera.mesh([SQUARE], 0.2)
     for loop in (SQUARE[::-1], np.repeat(SQUARE, 2, axis=0), np.vstack([SQUARE, SQUARE[:1]])):
