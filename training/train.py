@@ -66,9 +66,11 @@ def loss_nn2_moves(net: torch.nn.Module, examples: Examples, rng: np.random.Gene
     examples, inner = examples[fits], inner[fits]
     out, ok = np.empty((len(inner), 80, 3), np.int64), np.zeros(len(inner), bool)
     contour, n_contour, n_inner = (tensor(a) for a in (examples.contour, examples.n_contour, examples.n_inner))
-    total = 0.0
+    total = 0 * next(net.parameters()).sum()
     for _ in range(2):
         elements_of(examples.contour, inner, examples.n_contour, examples.n_inner, out, ok)
+        if not ok.any():  # an untrained network may have moved all of a small batch out of their contours
+            break
         moved = net(contour, n_contour, tensor(inner), n_inner)
         rows = torch.tensor(ok, device=DEVICE)
         energy = mesh_energy(torch.cat([contour, moved], 1)[rows], tensor(out)[rows])
