@@ -18,9 +18,9 @@ def main() -> None:
     for ax, role in zip(axes, ROLES, strict=True):
         step, loss, held_out = np.loadtxt(configuration.ROOT / "runs" / f"{role}.csv", delimiter=",", ndmin=2).T
         # A warm start counts from 0 again: put it behind what came before.
-        starts = np.flatnonzero(np.diff(step, prepend=0) < 0)
+        counted, starts = step.copy(), np.flatnonzero(np.diff(step, prepend=0) < 0)
         for start in starts:
-            step[start:] += step[start - 1]
+            step[start:] += counted[start - 1]
         ax.plot(step, loss, label="training", color="#a8dadc")
         ax.plot(step, held_out, label="held out", color="#1d3557")
         for start in starts:
