@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numba import njit
 
+from tessera.cavity import even_lengths, is_inside
 from tessera.transform import superimpose
 
 from . import configuration
@@ -79,28 +80,6 @@ def trim(examples: Examples) -> Examples:
     return replace(examples, contour=examples.contour[:, :n], inner=examples.inner[:, :m], placed=placed)
 
 
-def even_lengths(contour: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray) -> np.ndarray:
-    """(n,) edge length of the equilateral elements that would fill each cavity."""
-    index = np.arange(contour.shape[1])
-    after = np.take_along_axis(contour, np.where(index + 1 < n_contour[:, None], index + 1, 0)[..., None], axis=1)
-    real = index < n_contour[:, None]
-    area = 0.5 * ((contour[..., 0] * after[..., 1] - contour[..., 1] * after[..., 0]) * real).sum(1)
-    return np.sqrt(np.maximum(area, 1e-4) * 4 / np.sqrt(3) / (2 * n_inner + n_contour - 2))
-
-
-def inside(points: np.ndarray, contour: np.ndarray, n_contour: np.ndarray) -> np.ndarray:
-    """(n, M) whether points (n, M, 2) are inside their contour, by the even-odd rule."""
-    index = np.arange(contour.shape[1])
-    after = np.take_along_axis(contour, np.where(index + 1 < n_contour[:, None], index + 1, 0)[..., None], axis=1)
-    real = (index < n_contour[:, None])[:, None]
-    x, y = points[..., 0, None], points[..., 1, None]
-    ax, ay, bx, by = (p[:, None] for p in (contour[..., 0], contour[..., 1], after[..., 0], after[..., 1]))
-    straddles = (ay > y) != (by > y)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        left = x < ax + (y - ay) * (bx - ax) / (by - ay)
-    return ((straddles & left & real).sum(-1) % 2).astype(bool)
-
-
 def score_batch(
     rng: np.random.Generator, examples: Examples, spread: int = 32, near: int = 16
 ) -> tuple[np.ndarray, ...]:
@@ -115,7 +94,7 @@ def score_batch(
     points = np.concatenate([everywhere, close], axis=1)
     away = np.linalg.norm(points[:, :, None] - examples.inner[:, None], axis=-1)
     away[np.broadcast_to((np.arange(away.shape[2]) >= examples.n_inner[:, None])[:, None], away.shape)] = np.inf
-    counts = inside(points, examples.contour, examples.n_contour) & (examples.n_inner > 0)[:, None]
+    counts = is_inside(points, examples.contour, examples.n_contour) & (examples.n_inner > 0)[:, None]
     scores = np.where(counts, away.min(-1, initial=1e3) / even[:, None], 0)
     return points, scores, counts
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .cavity import next_vertices
 from .scheme import mesh_contours
 from .stopwatch import Stopwatch
 
@@ -32,7 +33,6 @@ def mesh_cells(
 def mean_edge_lengths(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     """(c,) the average edge length of each cell's contour: the target that the paper meshes a sub-contour at."""
     count = (cells >= 0).sum(axis=1)
-    index = np.arange(cells.shape[1])
-    after = np.take_along_axis(cells, np.where(index + 1 < count[:, None], index + 1, 0), axis=1)
-    lengths = np.linalg.norm(points[after] - points[cells], axis=-1)
+    contours = points[cells]
+    lengths = np.linalg.norm(next_vertices(contours, count) - contours, axis=-1)
     return np.where(cells >= 0, lengths, 0).sum(axis=1) / count

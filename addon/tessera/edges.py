@@ -5,21 +5,23 @@ from __future__ import annotations
 import numpy as np
 
 
+def sides(triangles: np.ndarray) -> np.ndarray:
+    """The three edges of each of the triangles (m, 3), smaller vertex first: (3 m, 2) int64."""
+    return np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1).astype(np.int64)
+
+
 def unique_edges(triangles: np.ndarray) -> np.ndarray:
     """Each edge of triangles (m, 3) once, its smaller vertex first: (e, 2)."""
-    edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1).astype(np.int64)
-    key = np.unique(edges[:, 0] * (int(edges.max(initial=0)) + 1) + edges[:, 1])
-    return np.stack(np.divmod(key, int(edges.max(initial=0)) + 1), axis=1)
+    edges, n = sides(triangles), int(triangles.max(initial=0)) + 1
+    return np.stack(np.divmod(np.unique(edges[:, 0] * n + edges[:, 1]), n), axis=1)
 
 
 def inner_edges(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The edges (e, 2), smaller vertex first, and whether each lies between two triangles (e,)."""
     n = int(triangles.max(initial=0)) + 1
     edges = unique_edges(triangles)
-    sides = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    count = np.bincount(
-        np.searchsorted(edges[:, 0] * n + edges[:, 1], sides[:, 0] * n + sides[:, 1]), minlength=len(edges)
-    )
+    a, b = sides(triangles).T
+    count = np.bincount(np.searchsorted(edges[:, 0] * n + edges[:, 1], a * n + b), minlength=len(edges))
     return edges, count == 2
 
 

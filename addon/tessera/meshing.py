@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -121,9 +120,9 @@ def mesh_domains(
                 warnings = long_edge_warnings(results[number], edge_length)
             else:
                 warnings = lost_area_warnings(results[number], part, elements, edge_length)
-            results[number] = make_mesh(part, elements, fallbacks=int(fell[number]), warnings=warnings)
-    for number in numbers:
-        results[number] = replace(results[number], report=replace(results[number].report, seconds=dict(watch.seconds)))
+            results[number] = make_mesh(
+                part, elements, fallbacks=int(fell[number]), warnings=warnings, seconds=watch.seconds
+            )
     return results
 
 

@@ -41,7 +41,7 @@ def count_inner_vertices(contour: np.ndarray, n_contour: np.ndarray, l_s: np.nda
             None,
             {"contour": _single(contour, rows, n), "n_contour": n_contour[rows], "l_s": l_s[rows].astype(np.float32)},
         )
-    # Rounded first: an answer on the border between two counts falls to the same side in every batch.
+    # Rounded first: an answer on the border between two counts falls to the same side on every processor.
     return np.rint(np.round(count, 3)).astype(np.int64)
 
 

@@ -13,7 +13,7 @@ from collections.abc import Callable
 import numpy as np
 
 from .assembly import mean_edge_lengths, mesh_cells
-from .edges import inner_edges
+from .edges import inner_edges, sides
 from .quality import element_quality
 from .relaxation import relax
 from .stopwatch import Stopwatch
@@ -63,10 +63,9 @@ def refine(
 
 def _beside_slivers(vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray) -> np.ndarray:
     """(e,) which edges belong to an element that is too flat to be split."""
-    flat = triangles[element_quality(vertices, triangles) < _SLIVER]
-    sides = np.sort(flat[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    a, b = sides(triangles[element_quality(vertices, triangles) < _SLIVER]).T
     stride = int(edges.max()) + 1
-    return np.isin(edges[:, 0] * stride + edges[:, 1], sides[:, 0] * stride + sides[:, 1])
+    return np.isin(edges[:, 0] * stride + edges[:, 1], a * stride + b)
 
 
 def _sub_contours(

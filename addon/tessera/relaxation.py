@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from . import networks
+from .cavity import next_vertices
 from .edges import off_boundary
 from .stars import Stars, find_stars, independent_sets
 from .transform import superimpose
@@ -77,10 +78,8 @@ def _better_places(vertices: np.ndarray, stars: Stars) -> tuple[np.ndarray, np.n
 
 def _star_quality(ring: np.ndarray, n_ring: np.ndarray, centre: np.ndarray) -> np.ndarray:
     """(2, S) worst and mean quality of the elements that each centre (S, 2) forms with its ring (S, R, 2)."""
-    index = np.arange(ring.shape[1])
-    real = index < n_ring[:, None]
-    after = np.take_along_axis(ring, np.where(index + 1 < n_ring[:, None], index + 1, 0)[..., None], axis=1)
-    a, b = ring - centre[:, None], after - centre[:, None]
+    real = np.arange(ring.shape[1]) < n_ring[:, None]
+    a, b = ring - centre[:, None], next_vertices(ring, n_ring) - centre[:, None]
     squares = (a * a).sum(-1) + (b * b).sum(-1) + ((a - b) ** 2).sum(-1)
     quality = 2 * np.sqrt(3) * (a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]) / np.maximum(squares, 1e-300)
     return np.stack([np.where(real, quality, 1).min(axis=1), np.where(real, quality, 0).sum(axis=1) / n_ring])

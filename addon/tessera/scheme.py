@@ -71,7 +71,7 @@ def connect(
             transformation.apply(contour), n_contour, transformation.apply(inner), n_inner, entries
         )
         table = np.zeros((*possible.shape, 2))
-        # Rounded, so that the last bits, which may depend on the batch, decide nothing.
+        # Rounded, so that the last bits, which may depend on the processor, decide nothing.
         table[row, facet, vertex] = np.round(rated[row, facet, column], 4)
         return table
 

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 import torch
 
+from tessera.cavity import even_lengths, is_inside
 from tests.validity import check_many
 from training import configuration, contours, generate, meshing, reference, tables
-from training.data import elements_of, even_lengths, inside, is_clear, reflect, sub_contour
+from training.data import elements_of, is_clear, reflect, sub_contour
 from training.export import INPUTS, sample
 from training.networks import ROLES
 
@@ -128,7 +129,7 @@ def test_sub_contours_are_simple_and_keep_all_vertices_inside(shard):
     for row in np.flatnonzero(data.n_inner > 2):
         n, m = int(data.n_contour[row]), int(data.n_inner[row])
         points, count = sub_contour(rng, np.concatenate([data.contour[row, :n], data.inner[row, :m]]), n)
-        assert inside(points[None, count:], points[None, :count], np.array([count])).all()
+        assert is_inside(points[None, count:], points[None, :count], np.array([count])).all()
         opposite = np.empty((len(points), len(points)), np.int64)
         assert meshing.delaunay(points, count, len(points), opposite)
 
