@@ -24,7 +24,7 @@ class Contours:
     n_contour: np.ndarray  # (B,) int64
     n_inner: np.ndarray  # (B,) int64
 
-    def rows(self, rows: np.ndarray) -> "Contours":
+    def rows(self, rows: np.ndarray | slice) -> "Contours":
         """The chosen contours, their padding trimmed."""
         n_contour, n_inner = self.n_contour[rows], self.n_inner[rows]
         width = int((n_contour + n_inner).max(initial=0))

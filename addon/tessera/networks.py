@@ -104,19 +104,23 @@ def move_inner_vertices(
 
 
 def rate_connections(
-    contour: np.ndarray, n_contour: np.ndarray, inner: np.ndarray, n_inner: np.ndarray, possible: np.ndarray
+    contour: np.ndarray, n_contour: np.ndarray, inner: np.ndarray, n_inner: np.ndarray, entries: np.ndarray
 ) -> np.ndarray:
-    """NN3: connection tables (B, F, N + M, 2) of (q_worst, q_mean); 0 where an element is not possible.
+    """NN3: values (q_worst, q_mean) (P, 2) float64 of entries of the connection tables.
 
-    possible: (B, F, N + M) bool; contour vertices are the first N columns, inner vertices the others.
+    entries: (P, 3) int64, sorted (contour, facet, vertex); a contour's inner vertices count on from its n_contour.
     """
-    table = np.zeros((*possible.shape, 2))
-    n_padded = contour.shape[1]
+    values = np.zeros((len(entries), 2))
+    first = np.searchsorted(entries[:, 0], np.arange(len(n_contour) + 1))
     for rows, n, m in _groups(n_contour, n_inner):
-        row, facet, vertex = np.nonzero(possible[rows])
-        if not len(row):
+        size = first[rows + 1] - first[rows]
+        row = np.repeat(np.arange(len(rows)), size)
+        chosen = (first[rows] - np.cumsum(size) + size)[row] + np.arange(len(row))
+        if not len(chosen):
             continue
-        column = np.where(vertex < n_padded, vertex, vertex - n_padded + n)
+        _, facet, vertex = entries[chosen].T
+        n_own = n_contour[rows][row]
+        column = np.where(vertex < n_own, vertex, vertex - n_own + n)
         (out,) = session("nn3").run(
             None,
             {
@@ -127,8 +131,8 @@ def rate_connections(
                 "entries": np.stack([row, facet, column], axis=1),
             },
         )
-        table[rows[row], facet, vertex] = out
-    return table
+        values[chosen] = out
+    return values
 
 
 def _groups(n_contour: np.ndarray, n_inner: np.ndarray, per_edge: int = 0) -> Iterator[tuple[np.ndarray, int, int]]:

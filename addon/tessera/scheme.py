@@ -50,11 +50,11 @@ def mesh_contours(
 
 
 def connect(
-    points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, possible: np.ndarray, watch: Stopwatch
+    points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, entries: np.ndarray, watch: Stopwatch
 ) -> np.ndarray:
-    """NN3's connection tables of (sub-)contours: (B, F, V, 2).
+    """NN3's values (P, 2) of the entries (P, 3) of (sub-)contours' connection tables.
 
-    points: (B, V, 2), contour vertices first, inner vertices right after them; possible: (B, F, V) bool.
+    points: (B, V, 2), contour vertices, then inner vertices; entries: (contour, facet, vertex), sorted.
     """
     with watch("NN3"):
         n, m = int(n_contour.max()), max(1, int(n_inner.max()))
@@ -63,17 +63,11 @@ def connect(
         index = np.minimum(n_contour[:, None] + np.arange(m), points.shape[1] - 1)
         inner = np.take_along_axis(points, index[..., None], axis=1)
         transformation = superimpose(contour, n_contour)
-        row, facet, vertex = np.nonzero(possible)
-        column = np.where(vertex < n_contour[row], vertex, vertex - n_contour[row] + n)
-        entries = np.zeros((len(points), possible.shape[1], n + m), dtype=bool)
-        entries[row, facet, column] = True
         rated = networks.rate_connections(
             transformation.apply(contour), n_contour, transformation.apply(inner), n_inner, entries
         )
-        table = np.zeros((*possible.shape, 2))
         # Rounded, so that the last bits, which may depend on the processor, decide nothing.
-        table[row, facet, vertex] = np.round(rated[row, facet, column], 4)
-        return table
+        return np.round(rated, 4)
 
 
 def join_vertices(contours: np.ndarray, n_contour: np.ndarray, inner: np.ndarray, n_inner: np.ndarray) -> np.ndarray:

@@ -12,7 +12,7 @@ left is the same as going through the rows in the order of their best entries. B
 - V_locked, F_locked (lines 13-15, 22-26): a vertex is locked when no edge of any cavity starts from it, a facet when
   its element was made or its place is used up (`cavities.add_elements`). All their entries overlap an element.
 - Lines 28-34 (sub-contours, recursion): `cavities.sub_contours`. Those of three edges without inner vertices are
-  elements; the others of all contours are the next level's batch: one call of NN3 for each size of contour.
+  elements; the others of all contours are the next level's batch: one call of NN3 for all of them.
 
 Two departures from the listing, both found by measuring (1 200 contours with Gmsh's inner vertices, against CDT). The
 paper orders by q_worst, with q_mean only for ties; but very often an entry's q_worst is due to an element elsewhere,
@@ -68,7 +68,7 @@ _FLAT = 1e-5
 # Where contours are divided by their number of vertices into groups of a level.
 _SIZES = (5, 7, 10, 14, 20)
 # Size in bytes of the sign tensor that is held at a time.
-_CHUNK_SIZE = 1 << 24
+_CHUNK_SIZE = 1 << 26
 
 
 @dataclass(frozen=True)
@@ -85,10 +85,10 @@ def triangulate(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, 
 
     points: (B, V, 2) float64, each row n_contour vertices of a simple counter-clockwise polygon, then n_inner distinct
     vertices strictly inside, then padding of any value; n_contour, n_inner: (B,) int. connect: NN3, a function of
-    points, n_contour and n_inner of contours in the same form, and of which entries are possible elements (B, F, V)
-    bool, F = max n_contour -> (B, F, V, 2) tables of (q_worst, q_mean); other entries are not looked at. It is also
-    asked for sub-contours, whose edges can be as many as the contour has vertices. Raises ValueError where no element
-    is possible, which is so only if a contour is not as described; other such contours may go unnoticed.
+    points, n_contour and n_inner of contours in the same form, and of the entries that are possible elements (P, 3)
+    int64, sorted (contour, facet, vertex) -> (P, 2) float64, their (q_worst, q_mean). It is asked once for all contours
+    of a level of the recursion, whose edges can be as many as a contour has vertices. Raises ValueError where no
+    element is possible, which is so only if a contour is not as described; other such contours may go unnoticed.
     """
     n_rows, width = points.shape[:2]
     contours = Contours(
@@ -100,20 +100,21 @@ def triangulate(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, 
     )
     elements, owners = [np.zeros((0, 3), dtype=np.int32)], [np.zeros(0, dtype=np.int32)]
     fallbacks = np.zeros(n_rows, dtype=np.int32)
-    level = [contours]
-    while level:
-        rest = []
-        for group in _by_size(join(level)):
-            for rows in _chunks(group):
-                chunk = group.rows(rows)
-                triangles, row, stuck, left = _connect_facets(chunk, connect)
+    for rows in _chunks(contours):
+        level = [contours.rows(rows)]
+        while level:
+            groups = list(_by_size(join(level)))
+            signs = [edge_signs(group.points, group.n_contour, group.n_inner) for group in groups]
+            tables = _ask(groups, signs, connect)
+            level = []
+            for group, group_signs, (entries, values) in zip(groups, signs, tables, strict=True):
+                triangles, row, stuck, left = _connect_facets(group, group_signs, entries, values)
                 single = (left.n_contour == 3) & (left.n_inner == 0)
-                elements += [np.take_along_axis(chunk.slots[row], triangles, axis=1), left.slots[single, :3]]
-                owners += [chunk.owner[row], left.owner[single]]
-                np.add.at(fallbacks, chunk.owner[stuck], 1)
+                elements += [np.take_along_axis(group.slots[row], triangles, axis=1), left.slots[single, :3]]
+                owners += [group.owner[row], left.owner[single]]
+                np.add.at(fallbacks, group.owner[stuck], 1)
                 if not single.all():
-                    rest.append(left.rows(~single))
-        level = rest
+                    level.append(left.rows(~single))
     return Triangulation(*_in_order(np.concatenate(elements), np.concatenate(owners), width), fallbacks)
 
 
@@ -124,30 +125,44 @@ def _by_size(contours: Contours) -> Iterator[Contours]:
         yield contours.rows(size == value)
 
 
-def _chunks(contours: Contours) -> list[np.ndarray]:
-    """Row numbers, in pieces whose sign tensor is not too large."""
+def _chunks(contours: Contours) -> list[slice]:
+    """Rows, in pieces whose sign tensor is not too large."""
     n_rows, width = contours.slots.shape
     each = width**2 * (int(contours.n_contour.max(initial=0)) + 1)
-    return np.array_split(np.arange(n_rows), min(n_rows, 1 + n_rows * each // _CHUNK_SIZE))
+    step = max(1, _CHUNK_SIZE // each) if n_rows else 1
+    return [slice(start, start + step) for start in range(0, n_rows, step)]
 
 
-def _connect_facets(contours: Contours, connect: Connect) -> tuple[np.ndarray, np.ndarray, np.ndarray, Contours]:
+def _ask(groups: list[Contours], signs: list[np.ndarray], connect: Connect) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Possible entries (p, 3) of each group and their values (p, 2), by one call for all of them."""
+    entries = []
+    for group, group_signs in zip(groups, signs, strict=True):
+        possible = possible_elements(group_signs, group.n_contour, group.n_inner)
+        hopeless = ~possible.any(axis=(1, 2))
+        if hopeless.any():
+            contour = group.owner[hopeless][0]
+            raise ValueError(f"contour {contour} is no simple counter-clockwise polygon with its inner vertices inside")
+        entries.append(np.argwhere(possible))
+    first = np.cumsum([0] + [len(group.owner) for group in groups])
+    level = join(groups)
+    shifted = [part + [[row, 0, 0]] for part, row in zip(entries, first, strict=False)]
+    values = connect(level.points, level.n_contour, level.n_inner, np.concatenate(shifted))
+    ends = np.cumsum([len(part) for part in entries])
+    return list(zip(entries, np.split(values, ends[:-1]), strict=True))
+
+
+def _connect_facets(
+    contours: Contours, signs: np.ndarray, entries: np.ndarray, values: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, Contours]:
     """Connect the facets of each contour, best entry first, as long as an entry is left.
 
     Returns the elements (t, 3) and their rows (t,), the rows (s,) that had no acceptable entry
     and took the one element of best quality, and the sub-contours that are left.
     """
     n_contour = contours.n_contour
-    signs = edge_signs(contours.points, n_contour, contours.n_inner)
     starts = edge_starts(n_contour)
-    possible = possible_elements(signs, n_contour, contours.n_inner)
-    n_facets, width = possible.shape[1:]
-    hopeless = ~possible.any(axis=(1, 2))
-    if hopeless.any():
-        place = contours.owner[hopeless][0]
-        raise ValueError(f"contour {place} is not a simple counter-clockwise polygon with its inner vertices inside")
-    tables = connect(contours.points, n_contour, contours.n_inner, possible)
-    scores, stuck = _scores(contours.points, starts, tables, possible)
+    n_facets, width = starts.shape[1] - 1, contours.points.shape[1]
+    scores, stuck = _scores(contours.points, starts, entries, values)
     rows = np.arange(len(scores))
     boundaries = open_contours(n_contour)
     elements, element_rows = [], []
@@ -170,21 +185,21 @@ def _connect_facets(contours: Contours, connect: Connect) -> tuple[np.ndarray, n
 
 
 def _scores(
-    points: np.ndarray, starts: np.ndarray, tables: np.ndarray, possible: np.ndarray
+    points: np.ndarray, starts: np.ndarray, entries: np.ndarray, values: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Possible entries as integers, the better the larger and above 0: (B, F, V) int32.
 
     An entry is acceptable if its q_worst is finite and positive, and its element not flat; others are at most 0. Rows
     without any are returned too (s,): there every possible entry counts by its own quality.
     """
-    row, facet, vertex = np.nonzero(possible)
+    row, facet, vertex = entries.T
     own = _facet_quality(points, starts)[row, facet, vertex]
-    worst, mean = np.nan_to_num(tables[row, facet, vertex], nan=0, posinf=0, neginf=0).T
+    worst, mean = np.nan_to_num(values, nan=0, posinf=0, neginf=0).T
     acceptable = (worst > 0) & (own > _FLAT)
-    stuck = np.bincount(row[acceptable], minlength=len(possible)) == 0
+    stuck = np.bincount(row[acceptable], minlength=len(points)) == 0
     value = np.minimum(worst, own) + np.clip(mean, 0, 1) + _OWN_WEIGHT * own
     value = np.where(stuck[row], own, np.where(acceptable, value, -1))
-    scores = np.zeros(possible.shape, dtype=np.int32)
+    scores = np.zeros((len(points), starts.shape[1] - 1, points.shape[1]), dtype=np.int32)
     scores[row, facet, vertex] = (value * 2**_BITS).astype(np.int32) + 1
     return scores, np.flatnonzero(stuck)
 

@@ -1,5 +1,7 @@
 """Triangulation: valid for every table, the same in every batch, and close to CDT with calculated tables."""
 
+from itertools import zip_longest
+
 import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -78,25 +80,31 @@ def padded(members: list[tuple[np.ndarray, np.ndarray]], extra: int = 0):
     return points, n_contour, n_inner
 
 
-def scattered(points, n_contour, n_inner, possible):
+def corners(points, n_contour, entries):
+    """The entries' elements (P, 3, 2)."""
+    row, facet, vertex = entries.T
+    return points[row[:, None], np.stack([facet, (facet + 1) % n_contour[row], vertex], axis=1)]
+
+
+def scattered(points, n_contour, n_inner, entries):
     """Entries that look random, but depend on the contour's own points alone."""
-    x = points[..., 0] * 12.9898 + points[..., 1] * 78.233
-    ends = np.take_along_axis(x, edge_starts(n_contour), axis=1)
-    value = np.sin(1e4 * (ends[:, :-1] + 3 * ends[:, 1:])[..., None] + 1e4 * x[:, None]) * 43758.5453
+    x = corners(points, n_contour, entries) @ [12.9898, 78.233]
+    value = np.sin(1e4 * (x @ [1, 3, 1])) * 43758.5453
     return np.stack([value % 1, (7 * value) % 1], axis=-1)
 
 
-def own_quality(points, n_contour, n_inner, possible):
-    starts = edge_starts(n_contour)
-    n_rows, n_facets, width = len(points), starts.shape[1] - 1, points.shape[1]
-    row, facet, vertex = np.indices((n_rows, n_facets, width)).reshape(3, -1)
-    corners = np.stack([starts[row, facet], starts[row, facet + 1], vertex], axis=1) + row[:, None] * width
-    quality = element_quality(points.reshape(-1, 2), corners).reshape(n_rows, n_facets, width)
-    return np.repeat(quality[..., None], 2, axis=-1)
+def own_quality(points, n_contour, n_inner, entries):
+    elements = corners(points, n_contour, entries).reshape(-1, 2)
+    quality = element_quality(elements, np.arange(len(elements)).reshape(-1, 3))
+    return np.repeat(quality[:, None], 2, axis=1)
+
+
+def calculated(points, n_contour, n_inner, entries):
+    return connection_tables(points, n_contour, n_inner)[tuple(entries.T)]
 
 
 def filled(value):
-    return lambda points, n_contour, n_inner, possible: np.full((*possible.shape, 2), value)
+    return lambda points, n_contour, n_inner, entries: np.full((len(entries), 2), value)
 
 
 TABLES = {
@@ -160,6 +168,25 @@ def test_a_mesh_does_not_depend_on_its_batch(name):
     assert [mesh for member in members for mesh in meshes([member], connect)] == together
 
 
+def test_one_call_rates_all_contours_of_a_level():
+    members = mixed_batch(30)
+
+    def levels(members):
+        calls = []
+
+        def connect(points, n_contour, n_inner, entries):
+            assert np.array_equal(np.unique(entries[:, 0]), np.arange(len(points)))
+            assert np.array_equal(entries, np.unique(entries, axis=0))
+            calls.append(len(points))
+            return scattered(points, n_contour, n_inner, entries)
+
+        meshes(members, connect)
+        return calls
+
+    alone = [levels([member]) for member in members]
+    assert levels(members) == [sum(level) for level in zip_longest(*alone, fillvalue=0)]
+
+
 def test_chunks_do_not_change_meshes(monkeypatch):
     members = mixed_batch(20)
     together = meshes(members, scattered)
@@ -209,7 +236,7 @@ def test_calculated_tables_lead_close_to_cdt():
         if len(inner) >= 2:
             members.append((polygon, np.array(inner)))
     batch = padded(members)
-    result = triangulate(*batch, lambda *given: connection_tables(*given[:3]))
+    result = triangulate(*batch, calculated)
     errors = []
     for row, (polygon, inner) in enumerate(members):
         vertices = np.concatenate([polygon, inner])
