@@ -12,6 +12,7 @@ from .boundary import resample_loops
 from .contour import clean_domains, clean_loop, nesting, signed_area
 from .division import divide
 from .errors import ContourError
+from .flips import flip_edges
 from .mesh import Mesh, make_mesh
 from .placement import MOST_INNER
 from .refinement import refine
@@ -24,37 +25,48 @@ MOST_TRIANGLES = 5_000_000
 LOST_AREA = 0.1  # of a curve's area, from which a coarser boundary is warned of
 
 
-def mesh(loops: Sequence[ArrayLike], edge_length: float, *, sizing: None = None, boundary: str = "resample") -> Mesh:
+def mesh(
+    loops: Sequence[ArrayLike],
+    edge_length: float,
+    *,
+    sizing: None = None,
+    boundary: str = "resample",
+    flips: bool = False,
+) -> Mesh:
     """Mesh one domain: the planar region that closed curves bound.
 
     loops: (k, 2) arrays, in any winding and order; by the even-odd rule outer contours (holes are not meshed yet).
     edge_length: the target, in the loops' unit. boundary: "resample" places vertices on the given polylines at the
     target edge length, keeping their corners; "keep" keeps exactly the given vertices and adds none on the contour.
-    sizing: for later; only None is accepted.
+    sizing: for later; only None is accepted. flips: a last pass exchanges edges where that raises the worse quality of
+    the two elements beside them.
 
     Raises ContourError, whose ``reason`` is a short word, for input that cannot be meshed, and a plain ValueError for
     what is no sequence of (k, 2) arrays of numbers.
     """
     if sizing is not None:
         raise NotImplementedError("sizing functions are not there yet: leave sizing=None for one target edge length")
-    (result,) = mesh_domains([loops], edge_length, boundary)
+    (result,) = mesh_domains([loops], edge_length, boundary, flips)
     if isinstance(result, ContourError):
         raise result
     return result
 
 
-def mesh_many(domains: Sequence[Sequence[ArrayLike]], edge_length: float) -> list[Mesh | ContourError]:
+def mesh_many(
+    domains: Sequence[Sequence[ArrayLike]], edge_length: float, *, flips: bool = False
+) -> list[Mesh | ContourError]:
     """Mesh a batch of domains, each as `mesh` does: a Mesh, or the ContourError that it has, for each.
 
     Raises ContourError "edge-length" where no domain could be meshed at that length.
     """
-    return mesh_domains(domains, edge_length, "resample")
+    return mesh_domains(domains, edge_length, "resample", flips)
 
 
-def mesh_contour(points: ArrayLike, edge_length: float) -> Mesh:
+def mesh_contour(points: ArrayLike, edge_length: float, *, flips: bool = False) -> Mesh:
     """Mesh one contour by the paper's scheme alone: 3 ≤ N_C ≤ 16, its vertices are the boundary, untouched.
 
-    points: (N_C, 2). The mesh's first N_C vertices are the contour's, counter-clockwise. Raises ContourError.
+    points: (N_C, 2); flips: as in `mesh`. The mesh's first N_C vertices are the contour's, counter-clockwise. Raises
+    ContourError.
     """
     edge_length = checked_edge_length(edge_length)
     contour = clean_loop(points)
@@ -67,7 +79,7 @@ def mesh_contour(points: ArrayLike, edge_length: float) -> Mesh:
         raise ContourError("too-many-edges", message)
     watch = Stopwatch()
     n_contour = np.array([n])
-    meshes = mesh_contours(contour[None], n_contour, np.array([edge_length]), watch)
+    meshes = mesh_contours(contour[None], n_contour, np.array([edge_length]), watch, flips)
     (vertices,) = join_vertices(contour[None], n_contour, meshes.inner, meshes.n_inner)
     warnings = ()
     if meshes.n_inner[0] < meshes.wanted[0]:
@@ -95,7 +107,7 @@ def checked_edge_length(edge_length: float) -> float:
 
 
 def mesh_domains(
-    domains: Sequence[Sequence[ArrayLike]], edge_length: float, boundary: str
+    domains: Sequence[Sequence[ArrayLike]], edge_length: float, boundary: str, flips: bool
 ) -> list[Mesh | ContourError]:
     """Mesh many domains as one batch: a Mesh, or the ContourError that it has, for each."""
     if boundary not in ("resample", "keep"):
@@ -112,7 +124,7 @@ def mesh_domains(
         if boundary == "resample" and polygons:
             polygons = resample_loops(polygons, edge_length, domain)
     if polygons:
-        vertices, triangles, owner, fallbacks = _mesh_polygons(polygons, edge_length, watch)
+        vertices, triangles, owner, fallbacks = _mesh_polygons(polygons, edge_length, flips, watch)
         of = domain[owner]
         fell = np.bincount(domain, fallbacks, minlength=len(results)).astype(int)
         for number, (part, elements) in zip(numbers, _parts(vertices, triangles, of, numbers), strict=True):
@@ -186,7 +198,7 @@ def lost_area_warnings(
 
 
 def _mesh_polygons(
-    polygons: list[np.ndarray], edge_length: float, watch: Stopwatch
+    polygons: list[np.ndarray], edge_length: float, flips: bool, watch: Stopwatch
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Mesh simple polygons: vertices (n, 2), triangles (m, 3), the polygon of each (m,), fallbacks of each polygon."""
     with watch("division"):
@@ -200,6 +212,9 @@ def _mesh_polygons(
     counts += np.bincount(owner, more, minlength=len(polygons))
     vertices, triangles, owner, again = improve(vertices, triangles, owner[parent], watch)
     counts[: len(again)] += again
+    if flips:
+        with watch("flips"):
+            triangles = flip_edges(vertices, triangles)
     return vertices, triangles, owner, counts
 
 

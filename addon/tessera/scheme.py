@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import networks
+from .flips import flip_edges
 from .placement import MOST_INNER, place_inner_vertices
 from .stopwatch import Stopwatch
 from .transform import superimpose
@@ -28,11 +29,12 @@ class ContourMeshes:
 
 
 def mesh_contours(
-    contours: np.ndarray, n_contour: np.ndarray, edge_length: np.ndarray, watch: Stopwatch
+    contours: np.ndarray, n_contour: np.ndarray, edge_length: np.ndarray, watch: Stopwatch, flips: bool = False
 ) -> ContourMeshes:
     """Mesh contours, each at its own target edge length.
 
-    contours: (B, N, 2) float64, simple and counter-clockwise, n_contour (B,) vertices each, 3 to 16; edge_length: (B,).
+    contours: (B, N, 2) float64, simple and counter-clockwise, n_contour (B,) vertices each, 3 to 16; edge_length: (B,);
+    flips: whether `flips.flip_edges` passes over the meshes in the end.
     """
     with watch("transformation"):
         transformation = superimpose(contours, n_contour)
@@ -46,7 +48,12 @@ def mesh_contours(
     with watch("triangulation"):
         points = join_vertices(contours, n_contour, inner, n_inner)
         meshes = triangulate(points, n_contour, n_inner, lambda *rest: connect(*rest, watch))
-    return ContourMeshes(inner, n_inner, wanted, meshes.triangles, meshes.owner, meshes.fallbacks)
+    triangles = meshes.triangles
+    if flips:
+        with watch("flips"):
+            first = meshes.owner[:, None].astype(np.int64) * points.shape[1]
+            triangles = (flip_edges(points.reshape(-1, 2), triangles + first) - first).astype(np.int32)
+    return ContourMeshes(inner, n_inner, wanted, triangles, meshes.owner, meshes.fallbacks)
 
 
 def connect(
