@@ -46,9 +46,7 @@ contours = st.one_of(
     st.tuples(st.integers(3, 8), st.sampled_from([0.05, 0.4, 0.9])).map(lambda a: star(*a)),
 )
 # Scale, angle, and offset in scales: 1e6 leaves coordinates only ten digits.
-placements = st.tuples(
-    st.sampled_from([1e-6, 1.0, 1e6]), st.sampled_from([0.0, 0.3]), st.sampled_from([0.0, 1.0, 1e6])
-)
+placements = st.tuples(st.sampled_from([1e-6, 1.0, 1e6]), st.sampled_from([0.0, 0.3]), st.sampled_from([0.0, 1.0, 1e6]))
 
 
 def is_contour(polygon: np.ndarray) -> bool:

@@ -26,10 +26,6 @@ def mesh(points, n_contour, l_s):
     return mesh_contours(points, n_contour, l_s, Stopwatch())
 
 
-def by_contour(meshes, row):
-    return meshes.triangles[meshes.owner == row], meshes.inner[row, : meshes.n_inner[row]]
-
-
 @settings(deadline=None, max_examples=20)
 @given(st.integers(0, 2**32), st.floats(0.15, 2))
 def test_every_contour_gets_a_valid_mesh(seed, l_s):
@@ -37,22 +33,6 @@ def test_every_contour_gets_a_valid_mesh(seed, l_s):
     meshes = mesh(points, n_contour, np.full(40, l_s))
     vertices = join_vertices(points, n_contour, meshes.inner, meshes.n_inner)
     check_many(vertices, n_contour, meshes.n_inner, meshes.triangles, meshes.owner)
-
-
-def test_a_contour_has_the_same_mesh_in_any_batch():
-    points, n_contour = sector_contours(3, 300)
-    l_s = np.random.default_rng(4).uniform(0.3, 1, 300)
-    whole = mesh(points, n_contour, l_s)
-    order = np.random.default_rng(5).permutation(300)
-    shuffled = mesh(points[order], n_contour[order], l_s[order])
-    for row in range(300):
-        here, there = by_contour(whole, row), by_contour(shuffled, np.flatnonzero(order == row)[0])
-        np.testing.assert_array_equal(here[0], there[0])
-        np.testing.assert_array_equal(here[1], there[1])
-    for row in range(0, 300, 10):
-        here, there = by_contour(whole, row), by_contour(mesh(*(a[[row]] for a in (points, n_contour, l_s))), 0)
-        np.testing.assert_array_equal(here[0], there[0])
-        np.testing.assert_array_equal(here[1], there[1])
 
 
 def test_a_shorter_target_gives_more_vertices():
