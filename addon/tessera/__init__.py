@@ -6,9 +6,12 @@
 True
 """
 
+from .allocation import keep_freed_memory
 from .errors import ContourError
 from .mesh import Mesh, Report
 from .meshing import mesh, mesh_contour, mesh_many
 from .quality import element_quality
 
 __all__ = ["ContourError", "Mesh", "Report", "element_quality", "mesh", "mesh_contour", "mesh_many"]
+
+keep_freed_memory()
