@@ -83,8 +83,8 @@ def one_size() -> tuple[str, list[Goal]]:
         "",
         f"Medians of {ROUNDS} rounds. l_s 0.3 to 0.6; Gmsh puts exactly 12 vertices into each contour, Tessera "
         f"{meshes.n_inner.mean():.1f} on average. ē_worst {e_worst:+.1f} %, ē_mean {e_mean:+.1f} %: means of "
-        "(q_Gmsh − q) / q_Gmsh, negative where Tessera's elements are better. No stage counts what has a row of its own: "
-        "triangulation is Algorithm 3 without NN3.",
+        "(q_Gmsh − q) / q_Gmsh, negative where Tessera's elements are better. A stage does not count what has a row of "
+        "its own: triangulation is Algorithm 3 without NN3.",
         "",
         "| | µs a contour | µs a triangle |",
         "| --- | --- | --- |",
