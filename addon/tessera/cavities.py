@@ -1,17 +1,17 @@
-"""The cavities that elements leave open: groups of edges, their splitting, and the sub-contours that they become.
+"""The cavities that elements leave open: their boundaries, their splitting, and the sub-contours that they become.
 
 A contour's 2 F edge places hold the boundaries of all its cavities. Place 2 f holds facet f or, once f is connected to
 a vertex v, the edge from f's start to v; place 2 f + 1 then holds the edge from v to f's end. The cavity lies on their
 left. Going around a cavity is going through its places in cyclic order: connecting facet f puts its two new edges
 where f was, and if v already is on the cavity's boundary, the places after f and before v's become a cavity of their
-own.
+own. Sets of places are words, one bit for each.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from .visibility import edge_starts
+from .visibility import as_bools, bits_of, edge_starts
 
 
 @dataclass(frozen=True)
@@ -35,89 +35,99 @@ class Contours:
 class Boundaries:
     """State of a batch's cavities. Filled in place by `add_elements` while a level is triangulated."""
 
-    apex: np.ndarray  # (B, F) int16: the vertex that facet f is connected to, or else the end of f
-    start: np.ndarray  # (B, 2 F) int16: the vertex that the edge in each place starts from
-    group: np.ndarray  # (B, 2 F) int16: the cavity's number, -1 where the place is empty
+    bits: np.ndarray  # (2 F,) words: the places
+    apex: np.ndarray  # (B, F) int64: the vertex that facet f is connected to, or else the end of f
+    from_vertex: np.ndarray  # (B, V) words: places whose edge starts, or started, from the vertex
+    cavity: np.ndarray  # (B, F + 1) words: the places of each cavity, by its number; 0 where nothing of it is left
 
 
 def join(parts: list[Contours]) -> Contours:
     """One batch of several, padded to the widest."""
+    if len(parts) == 1:
+        return parts[0]
+    ends = np.cumsum([len(part.owner) for part in parts])
     width = max(part.points.shape[1] for part in parts)
-    padding = [((0, 0), (0, width - part.points.shape[1])) for part in parts]
+    points, slots = np.zeros((ends[-1], width, 2)), np.zeros((ends[-1], width), dtype=np.int32)
+    for part, end in zip(parts, ends, strict=True):
+        place = slice(end - len(part.owner), end), slice(part.points.shape[1])
+        points[place], slots[place] = part.points, part.slots
     return Contours(
-        np.concatenate([np.pad(part.points, (*pad, (0, 0))) for part, pad in zip(parts, padding, strict=True)]),
-        np.concatenate([np.pad(part.slots, pad) for part, pad in zip(parts, padding, strict=True)]),
+        points,
+        slots,
         np.concatenate([part.owner for part in parts]),
         np.concatenate([part.n_contour for part in parts]),
         np.concatenate([part.n_inner for part in parts]),
     )
 
 
-def open_contours(n_contour: np.ndarray) -> Boundaries:
-    """One cavity for every contour: the contour itself."""
-    starts = edge_starts(n_contour).astype(np.int16)
+def open_contours(n_contour: np.ndarray, width: int) -> Boundaries:
+    """One cavity, of number 0, for every contour of `width` vertices with padding: the contour itself."""
+    starts = edge_starts(n_contour)
     n_rows, n_facets = len(n_contour), starts.shape[1] - 1
-    group = np.full((n_rows, 2 * n_facets), -1, dtype=np.int16)
-    group[:, ::2] = np.where(np.arange(n_facets) < n_contour[:, None], 0, -1)
-    return Boundaries(starts[:, 1:].copy(), np.repeat(starts[:, :-1], 2, axis=1), group)
+    bits = bits_of(2 * n_facets)
+    of_facets = bits[::2]
+    from_vertex = np.zeros((n_rows, width), dtype=of_facets.dtype)
+    from_vertex[:, :n_facets] = of_facets
+    cavity = np.zeros((n_rows, n_facets + 1), dtype=of_facets.dtype)
+    cavity[:, 0] = np.bitwise_or.accumulate(of_facets)[n_contour - 1]
+    return Boundaries(bits, starts[:, 1:].copy(), from_vertex, cavity)
 
 
-def add_elements(
-    boundaries: Boundaries, row: np.ndarray, facet: np.ndarray, vertex: np.ndarray, number: int
-) -> np.ndarray:
-    """Add element (facet, vertex) to each of the contours `row` (n,); a cavity that it splits off becomes `number`.
-
-    Returns which facets are used up: no cavity is left at their place: (n, F) bool.
-    """
+def add_elements(boundaries: Boundaries, row: np.ndarray, facet: np.ndarray, vertex: np.ndarray, number: int) -> None:
+    """Add element (facet, vertex) to each of the contours `row` (n,); a cavity that it splits off becomes `number`."""
+    bit = boundaries.bits[2 * facet]
+    own = (boundaries.cavity[row, :number] & bit[:, None] != 0).argmax(axis=1)
+    cavity = boundaries.cavity[row, own]
+    at = boundaries.from_vertex[row, vertex] & cavity
+    after = bit << 1
+    # The places after the facet's and before the vertex's, cyclic; none if the vertex is not on the boundary.
+    between = (at - 1) ^ (after - 1)
+    between = np.where(at < bit, ~between, between)
+    cavity |= after
+    part = np.where(at != 0, cavity & between, at)
+    boundaries.cavity[row, own] = _closed(cavity ^ part)
+    boundaries.cavity[row, number] = _closed(part)
+    boundaries.from_vertex[row, vertex] |= after
     boundaries.apex[row, facet] = vertex
-    start, group = boundaries.start[row], boundaries.group[row]
-    n, n_places = start.shape
-    index, place = np.arange(n), 2 * facet
-    own = group[index, place]
-    same = group == own[:, None]
-    meeting = same & (start == vertex[:, None])
-    splits = meeting.any(axis=1)
-    start[index, place + 1] = vertex
-    group[index, place + 1] = own
-    same[index, place + 1] = True
-    # Distance in places from the facet, cyclic.
-    distance = np.arange(n_places, dtype=np.int16) - place[:, None].astype(np.int16)
-    distance += np.where(distance < 0, np.int16(n_places), np.int16(0))
-    reach = np.where(splits, distance[index, meeting.argmax(axis=1)], 0)
-    beyond = same & (distance > 0) & (distance < reach[:, None])
-    group[beyond] = number
-    # Two edges there and back are an edge between two elements: nothing of the cavity is left.
-    group[beyond & (beyond.sum(axis=1) == 2)[:, None]] = -1
-    rest = same & ~beyond
-    group[rest & (rest.sum(axis=1) == 2)[:, None]] = -1
-    boundaries.start[row], boundaries.group[row] = start, group
-    return group[:, ::2] < 0
 
 
-def sub_contours(contours: Contours, boundaries: Boundaries, signs: np.ndarray) -> Contours:
-    """What is left of every contour: its cavities as contours, with the inner vertices that lie in them."""
-    row, place = np.nonzero(boundaries.group >= 0)
-    n_groups = int(boundaries.group.max(initial=0)) + 1
-    key = row * n_groups + boundaries.group[row, place]
-    order = np.argsort(key, kind="stable")
-    row, place, key = row[order], place[order], key[order]
-    vertex = boundaries.start[row, place]
-    first = np.flatnonzero(np.diff(key, prepend=-1))
-    n_contour = np.diff(first, append=len(key))
-    cavity = np.repeat(np.arange(len(first)), n_contour)
-    free_row, free_vertex = _free_vertices(contours, boundaries)
-    inside = _group_around(contours, boundaries, signs, free_row, free_vertex)
-    free_cavity = np.searchsorted(key[first], free_row * n_groups + inside)
-    order = np.argsort(free_cavity, kind="stable")
-    free_vertex, free_cavity = free_vertex[order], free_cavity[order]
-    n_inner = np.bincount(free_cavity, minlength=len(first))
-    position = np.arange(len(key)) - first[cavity]
-    before = np.cumsum(n_inner) - n_inner
-    free_position = n_contour[free_cavity] + np.arange(len(free_cavity)) - before[free_cavity]
-    local = np.zeros((len(first), int((n_contour + n_inner).max(initial=3))), dtype=np.int64)
-    local[cavity, position] = vertex
-    local[free_cavity, free_position] = free_vertex
-    parent = row[first]
+def _closed(places: np.ndarray) -> np.ndarray:
+    """Two edges there and back are an edge between two elements: nothing of the cavity is left."""
+    without_lowest = places & (places - 1)
+    return places * (without_lowest & (without_lowest - 1) != 0)
+
+
+def sub_contours(
+    contours: Contours, boundaries: Boundaries, sides: np.ndarray, below: np.ndarray, bits: np.ndarray
+) -> Contours:
+    """What is left of every contour: its cavities as contours, with the inner vertices that lie in them.
+
+    sides: `edge_sides`; below: (B, V) words, the vertices not lower than each; bits: (B, V) words of the vertices.
+    """
+    parent, number = np.nonzero(boundaries.cavity)
+    cavity, place = np.nonzero(as_bools(boundaries.cavity[parent, number], boundaries.bits))
+    n_contour = np.bincount(cavity, minlength=len(parent))
+    first = np.cumsum(n_contour) - n_contour
+    row, facet, odd = parent[cavity], place >> 1, place & 1
+    apex = boundaries.apex[row, facet]
+    vertex = np.where(odd, apex, facet)
+    inside = _free_vertices(contours.n_contour, boundaries, bits)[parent]
+    (open_ones,) = np.nonzero(inside)
+    if len(open_ones):
+        # A cavity holds the vertices from which a ray along x passes its boundary's edges an odd number of times.
+        (edges,) = np.nonzero((inside != 0)[cavity])
+        row, start, apex = row[edges], (facet + odd)[edges], apex[edges]
+        left, right = sides[row, apex, start].T
+        start_below, apex_below = below[row, start % contours.n_contour[row]], below[row, apex]
+        passed = (start_below & ~apex_below & left) | (~start_below & apex_below & right)
+        size = n_contour[open_ones]
+        inside[open_ones] &= np.bitwise_xor.reduceat(passed, np.cumsum(size) - size)
+    inner_cavity, inner = np.nonzero(as_bools(inside, bits[parent]))
+    n_inner = np.bincount(inner_cavity, minlength=len(parent))
+    local = np.zeros((len(parent), int((n_contour + n_inner).max(initial=3))), dtype=np.int64)
+    local[cavity, np.arange(len(cavity)) - first[cavity]] = vertex
+    before = np.cumsum(n_inner) - n_inner - n_contour
+    local[inner_cavity, np.arange(len(inner)) - before[inner_cavity]] = inner
     return Contours(
         contours.points[parent[:, None], local],
         contours.slots[parent[:, None], local],
@@ -127,34 +137,9 @@ def sub_contours(contours: Contours, boundaries: Boundaries, signs: np.ndarray) 
     )
 
 
-def _free_vertices(contours: Contours, boundaries: Boundaries) -> tuple[np.ndarray, np.ndarray]:
-    """Inner vertices that no element uses yet, as (row, vertex)."""
-    index = np.arange(contours.points.shape[1])
-    free = (index >= contours.n_contour[:, None]) & (index < (contours.n_contour + contours.n_inner)[:, None])
-    np.put_along_axis(free, boundaries.apex.astype(np.int64), False, axis=1)
-    return np.nonzero(free)
-
-
-def _group_around(
-    contours: Contours, boundaries: Boundaries, signs: np.ndarray, row: np.ndarray, vertex: np.ndarray
-) -> np.ndarray:
-    """Number of the cavity in which each vertex (row, vertex) (k,) lies: (k,).
-
-    Every cavity's boundary winds once around the vertices in it and not around others, so the sum of winding times
-    number over all edges is the number sought.
-    """
-    starts = edge_starts(contours.n_contour)[row]
-    apex = boundaries.apex[row].astype(np.int64)
-    height = contours.points[row, :, 1]
-    below = height <= height[np.arange(len(row)), vertex][:, None]
-    total = np.zeros(len(row), dtype=np.int64)
-    facet = np.arange(apex.shape[1])
-    for first, begin, direction in ((0, facet, 1), (1, facet + 1, -1)):
-        # Even places: from the facet's start to the apex. Odd ones: from the apex to the facet's end.
-        side = signs[row[:, None], vertex[:, None], begin, apex]
-        start_below = np.take_along_axis(below, starts[:, begin], axis=1)
-        apex_below = np.take_along_axis(below, apex, axis=1)
-        winding = (start_below & ~apex_below & (side > 0)).astype(np.int64)
-        winding -= ~start_below & apex_below & (side < 0)
-        total += direction * np.sum(winding * np.maximum(boundaries.group[row, first::2], 0), axis=1)
-    return total
+def _free_vertices(n_contour: np.ndarray, boundaries: Boundaries, bits: np.ndarray) -> np.ndarray:
+    """Inner vertices that no element uses yet: words (B,)."""
+    index = np.arange(bits.shape[1])
+    free = bits * (index >= n_contour[:, None])
+    np.put_along_axis(free, boundaries.apex, free[:, :1], axis=1)
+    return np.bitwise_or.reduce(free, axis=1)

@@ -6,11 +6,12 @@ left is the same as going through the rows in the order of their best entries. B
 
 - Lines 9-16 (connect, validate): an entry is possible if its triangle is counter-clockwise, holds no other vertex of
   the contour, on its sides neither, and its new edges cross no facet (`visibility.possible_elements`). After each new
-  element the entries that overlap it are closed, so that the best entry left needs no validation (`_exclude`).
-- Group ids (lines 10-12, 18-21): `cavities.Boundaries.group`, for the places of edges; a vertex may be in several
-  groups.
-- V_locked, F_locked (lines 13-15, 22-26): a vertex is locked when no edge of any cavity starts from it, a facet when
-  its element was made or its place is used up (`cavities.add_elements`). All their entries overlap an element.
+  element the entries that overlap it are closed, so that the best entry left needs no validation (`_excluded`).
+- Group ids (lines 10-12, 18-21): `cavities.Boundaries.cavity` has the edges of each group; a vertex may be in several
+  groups. An entry whose facet and vertex are in different groups overlaps an element.
+- V_locked, F_locked (lines 13-15, 22-26): a vertex is locked when no edge of any cavity starts from it, a facet when it
+  is a side of an element. Their entries overlap an element too, so that there is no list of them: all three are in
+  the words of entries that are still possible (`possible` in `_connect_facets`).
 - Lines 28-34 (sub-contours, recursion): `cavities.sub_contours`. Those of three edges without inner vertices are
   elements; the others of all contours are the next level's batch: one call of NN3 for all of them.
 
@@ -28,8 +29,10 @@ Why it always ends with a valid mesh, whatever the tables are:
    properly or they lie on the same side of a common edge. For neither triangle holds a vertex of the other in its
    closure, apart from common ones: without proper crossing, edges could only meet in a vertex, or along each other
    with an end of one on the other. So one triangle would lie in the other, or a corner they share would have an edge
-   of one enter the other, which it could leave only across the opposite side. These two cases are what `_exclude`
-   closes; all new edges start from contour vertices, as the third edge of every entry is a facet.
+   of one enter the other, which it could leave only across the opposite side. These two cases are what `_excluded`
+   closes. New edges start from contour vertices, as the third edge of every entry is a facet. If the common edge is a
+   facet, new edges cross, as neither triangle holds the other's third vertex; or it is the same triangle, which has
+   new edges in common too.
 2. What is left beside the elements is a set of simple polygons with the remaining vertices strictly inside, by
    induction. An element on facet (a, b) of such a polygon with apex v inside it leaves one: a, v, b replaces a, b, and
    v was not on it. With v on its boundary, it leaves the part from b to v and that from v to a. Each vertex but v is
@@ -54,8 +57,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .cavities import Contours, add_elements, join, open_contours, sub_contours
-from .visibility import crossed_edges, edge_signs, edge_starts, possible_elements
+from .cavities import Boundaries, Contours, add_elements, join, open_contours, sub_contours
+from .visibility import (
+    as_bools,
+    bits_of,
+    crossing,
+    edge_sides,
+    lines_to,
+    pack_words,
+    padded_size,
+    possible_elements,
+    vertex_sides,
+)
 
 Connect = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
@@ -67,6 +80,8 @@ _OWN_WEIGHT = 0.05
 _FLAT = 1e-5
 # Where contours are divided by their number of vertices into groups of a level.
 _SIZES = (5, 7, 10, 14, 20)
+# Below this number of contours, calls cost more than padding, and a level is one group.
+_FEW = 32
 # Size in bytes of the sign tensor that is held at a time.
 _CHUNK_SIZE = 1 << 26
 
@@ -91,158 +106,228 @@ def triangulate(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, 
     element is possible, which is so only if a contour is not as described; other such contours may go unnoticed.
     """
     n_rows, width = points.shape[:2]
-    contours = Contours(
-        np.asarray(points, dtype=np.float64),
-        np.broadcast_to(np.arange(width, dtype=np.int32), (n_rows, width)),
-        np.arange(n_rows, dtype=np.int32),
-        np.asarray(n_contour, dtype=np.int64),
-        np.asarray(n_inner, dtype=np.int64),
-    )
+    n_contour, n_inner = np.asarray(n_contour, dtype=np.int64), np.asarray(n_inner, dtype=np.int64)
     elements, owners = [np.zeros((0, 3), dtype=np.int32)], [np.zeros(0, dtype=np.int32)]
     fallbacks = np.zeros(n_rows, dtype=np.int32)
-    for rows in _chunks(contours):
-        level = [contours.rows(rows)]
-        while level:
-            groups = list(_by_size(join(level)))
-            signs = [edge_signs(group.points, group.n_contour, group.n_inner) for group in groups]
-            tables = _ask(groups, signs, connect)
-            level = []
-            for group, group_signs, (entries, values) in zip(groups, signs, tables, strict=True):
-                triangles, row, stuck, left = _connect_facets(group, group_signs, entries, values)
-                single = (left.n_contour == 3) & (left.n_inner == 0)
-                elements += [np.take_along_axis(group.slots[row], triangles, axis=1), left.slots[single, :3]]
-                owners += [group.owner[row], left.owner[single]]
-                np.add.at(fallbacks, group.owner[stuck], 1)
-                if not single.all():
-                    level.append(left.rows(~single))
+    for rows in _chunks(n_contour + n_inner):
+        triangles, owner, fallbacks[rows] = _triangulate(points[rows], n_contour[rows], n_inner[rows], rows, connect)
+        elements.append(triangles)
+        owners.append(rows[owner])
     return Triangulation(*_in_order(np.concatenate(elements), np.concatenate(owners), width), fallbacks)
 
 
-def _by_size(contours: Contours) -> Iterator[Contours]:
-    """Contours of similar size together, so that padding wastes little."""
-    size = np.digitize(contours.n_contour + contours.n_inner, _SIZES)
-    for value in np.unique(size):
-        yield contours.rows(size == value)
+def _chunks(size: np.ndarray) -> Iterator[np.ndarray]:
+    """Rows of contours of so many vertices (B,) that share a type of words, in pieces that are not too large."""
+    word = np.digitize(size, (33, 65))
+    for value in np.unique(word):
+        rows = np.flatnonzero(word == value)
+        width = int(size[rows].max())
+        step = max(1, _CHUNK_SIZE // (width * width * 2 * bits_of(width).itemsize))
+        for first in range(0, len(rows), step):
+            yield rows[first : first + step]
 
 
-def _chunks(contours: Contours) -> list[slice]:
-    """Rows, in pieces whose sign tensor is not too large."""
+def _triangulate(
+    points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, number: np.ndarray, connect: Connect
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Elements (t, 3), their rows (t,) and the fallbacks (B,) of some contours; number (B,): theirs in the batch."""
+    n_rows, width = len(points), int((n_contour + n_inner).max())
+    slots = np.broadcast_to(np.arange(width, dtype=np.int32), (n_rows, width))
+    level = Contours(points[:, :width].astype(np.float64), slots, np.arange(n_rows, dtype=np.int32), n_contour, n_inner)
+    bits = bits_of(width)
+    sides, below = _look_around(level, bits)
+    elements, owners, fallbacks = [], [], np.zeros(n_rows, dtype=np.int32)
+    while len(level.owner):
+        level, groups = _by_size(level)
+        views = [_view(group, sides, bits) for group in groups]
+        tables = _ask(level, groups, views, number, connect)
+        rest = []
+        for group, view, table in zip(groups, views, tables, strict=True):
+            triangles, row, stuck, boundaries = _connect_facets(group, *view, *table)
+            left = sub_contours(group, boundaries, view[0], below[group.owner[:, None], group.slots], view[1])
+            single = (left.n_contour == 3) & (left.n_inner == 0)
+            elements += [np.take_along_axis(group.slots[row], triangles, axis=1), left.slots[single, :3]]
+            owners += [group.owner[row], left.owner[single]]
+            fallbacks += np.bincount(group.owner[stuck], minlength=n_rows).astype(np.int32)
+            rest.append(left.rows(~single))
+        level = join(rest)
+    return np.concatenate(elements), np.concatenate(owners), fallbacks
+
+
+def _look_around(contours: Contours, bits: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """All `vertex_sides`, words (B, V, V, 2), and for each vertex those not lower than it, words (B, V)."""
     n_rows, width = contours.slots.shape
-    each = width**2 * (int(contours.n_contour.max(initial=0)) + 1)
-    step = max(1, _CHUNK_SIZE // each) if n_rows else 1
-    return [slice(start, start + step) for start in range(0, n_rows, step)]
+    sides = np.zeros((n_rows, width, width, 2), dtype=bits.dtype)
+    for group in _by_size(contours)[1]:
+        size = group.slots.shape[1]
+        sides[group.owner, :size, :size] = vertex_sides(group.points, group.n_contour + group.n_inner)
+    height = contours.points[..., 1]
+    others = np.zeros((n_rows, padded_size(width)))
+    others[:, :width] = height
+    return sides, pack_words(height[:, :, None] <= others[:, None], bits.dtype)
 
 
-def _ask(groups: list[Contours], signs: list[np.ndarray], connect: Connect) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Possible entries (p, 3) of each group and their values (p, 2), by one call for all of them."""
-    entries = []
-    for group, group_signs in zip(groups, signs, strict=True):
-        possible = possible_elements(group_signs, group.n_contour, group.n_inner)
-        hopeless = ~possible.any(axis=(1, 2))
+def _view(contours: Contours, sides: np.ndarray, bits: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The `edge_sides` of (sub-)contours, and the bits of their vertices, words (B, V), 0 for padding."""
+    present = np.arange(contours.slots.shape[1]) < (contours.n_contour + contours.n_inner)[:, None]
+    return edge_sides(sides, contours.owner, contours.slots, contours.n_contour), bits[contours.slots] * present
+
+
+def _by_size(contours: Contours) -> tuple[Contours, list[Contours]]:
+    """The contours, those of similar size one after the other, and in groups, so that padding wastes little."""
+    size = np.digitize(contours.n_contour + contours.n_inner, _SIZES if len(contours.owner) > _FEW else [])
+    order = np.argsort(size, kind="stable")
+    contours = contours.rows(order)
+    ends = np.cumsum(np.bincount(size))
+    return contours, [contours.rows(slice(*pair)) for pair in zip([0, *ends], ends, strict=False) if np.diff(pair)]
+
+
+def _ask(
+    level: Contours,
+    groups: list[Contours],
+    views: list[tuple[np.ndarray, np.ndarray]],
+    number: np.ndarray,
+    connect: Connect,
+) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """Of each group the possible elements, words (F, B), as entries (3, p), and their values (p, 2), in one call."""
+    possible, entries = [], []
+    for group, (sides, bits) in zip(groups, views, strict=True):
+        words = possible_elements(sides, bits, group.n_contour)
+        hopeless = ~(words != 0).any(axis=0)
         if hopeless.any():
-            contour = group.owner[hopeless][0]
+            contour = number[group.owner[hopeless][0]]
             raise ValueError(f"contour {contour} is no simple counter-clockwise polygon with its inner vertices inside")
-        entries.append(np.argwhere(possible))
+        possible.append(words)
+        entries.append(_entries(words, bits))
     first = np.cumsum([0] + [len(group.owner) for group in groups])
-    level = join(groups)
-    shifted = [part + [[row, 0, 0]] for part, row in zip(entries, first, strict=False)]
+    shifted = [part.T + [row, 0, 0] for part, row in zip(entries, first, strict=False)]
     values = connect(level.points, level.n_contour, level.n_inner, np.concatenate(shifted))
-    ends = np.cumsum([len(part) for part in entries])
-    return list(zip(entries, np.split(values, ends[:-1]), strict=True))
+    ends = np.cumsum([part.shape[1] for part in entries])
+    return list(zip(possible, entries, np.split(values, ends[:-1]), strict=True))
+
+
+def _entries(possible: np.ndarray, bits: np.ndarray) -> np.ndarray:
+    """Words (F, B) as rows, facets and vertices (3, p), sorted."""
+    width = bits.shape[1]
+    place = np.flatnonzero(as_bools(possible.T, bits[:, None]))
+    cell = place // width
+    row = cell // len(possible)
+    return np.array([row, cell - row * len(possible), place - cell * width])
 
 
 def _connect_facets(
-    contours: Contours, signs: np.ndarray, entries: np.ndarray, values: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, Contours]:
+    contours: Contours,
+    sides: np.ndarray,
+    bits: np.ndarray,
+    possible: np.ndarray,
+    entries: np.ndarray,
+    values: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, Boundaries]:
     """Connect the facets of each contour, best entry first, as long as an entry is left.
 
     Returns the elements (t, 3) and their rows (t,), the rows (s,) that had no acceptable entry
-    and took the one element of best quality, and the sub-contours that are left.
+    and took the one element of best quality, and the cavities that are left.
     """
     n_contour = contours.n_contour
-    starts = edge_starts(n_contour)
-    n_facets, width = starts.shape[1] - 1, contours.points.shape[1]
-    scores, stuck = _scores(contours.points, starts, entries, values)
+    scores, stuck = _scores(contours.points, n_contour, entries, values)
+    # The best entry of each facet, kept up to date.
+    vertices = scores.argmax(axis=2)
+    best = np.take_along_axis(scores, vertices[..., None], axis=2)[..., 0].T.copy()
+    chosen = np.take_along_axis(bits, vertices, axis=1).T.copy()
+    vertices = vertices.T.copy()
     rows = np.arange(len(scores))
-    boundaries = open_contours(n_contour)
-    elements, element_rows = [], []
-    for number in range(1, n_facets + 1):
-        best = scores.reshape(len(rows), -1).argmax(axis=1)
-        going = scores.reshape(len(rows), -1)[np.arange(len(rows)), best] > 0
+    boundaries = open_contours(n_contour, sides.shape[1])
+    elements = []
+    for number in range(1, len(best) + 1):
+        facet = best.argmax(axis=0)
+        going = best.max(axis=0) > 0
         if not going.all():
-            rows, scores, best = rows[going], scores[going], best[going]
+            rows, facet = rows[going], facet[going]
+            best, vertices, chosen, possible = (part[:, going] for part in (best, vertices, chosen, possible))
         if not len(rows):
             break
-        facet, vertex = np.divmod(best, width)
-        elements.append(np.stack([starts[rows, facet], starts[rows, facet + 1], vertex], axis=1))
-        element_rows.append(rows)
-        used_up = add_elements(boundaries, rows, facet, vertex, number)
-        _exclude(scores, signs, starts, rows, facet, vertex, used_up, n_contour[rows])
-        if number == 1:
-            scores[stuck] = 0
-    left = sub_contours(contours, boundaries, signs)
-    return np.concatenate(elements), np.concatenate(element_rows), stuck, left
+        vertex = vertices[facet, np.arange(len(rows))]
+        end = (facet + 1) % n_contour[rows]
+        elements.append([rows, facet, end, vertex])
+        add_elements(boundaries, rows, facet, vertex, number)
+        possible = possible & ~_excluded(sides, bits, rows, facet, end, vertex, n_contour[rows])
+        best = best * (possible != 0)
+        facet, index = np.nonzero((best > 0) & (possible & chosen == 0))
+        row = rows[index]
+        rest = scores[row, facet] * ((possible[facet, index, None] & bits[row]) != 0)
+        vertices[facet, index] = vertex = rest.argmax(axis=1)
+        chosen[facet, index] = bits[row, vertex]
+        best[facet, index] = rest[np.arange(len(rest)), vertex]
+        if number == 1 and len(stuck):
+            best[:, np.isin(rows, stuck)] = 0
+    row, *corners = np.concatenate(elements, axis=1)
+    return np.stack(corners, axis=1), row, stuck, boundaries
 
 
 def _scores(
-    points: np.ndarray, starts: np.ndarray, entries: np.ndarray, values: np.ndarray
+    points: np.ndarray, n_contour: np.ndarray, entries: np.ndarray, values: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Possible entries as integers, the better the larger and above 0: (B, F, V) int32.
 
     An entry is acceptable if its q_worst is finite and positive, and its element not flat; others are at most 0. Rows
     without any are returned too (s,): there every possible entry counts by its own quality.
     """
-    row, facet, vertex = entries.T
-    own = _facet_quality(points, starts)[row, facet, vertex]
-    worst, mean = np.nan_to_num(values, nan=0, posinf=0, neginf=0).T
+    row, facet, vertex = entries
+    n_facets, width = int(n_contour.max()), points.shape[1]
+    flat, first = np.ascontiguousarray(points).view(np.complex128).reshape(-1), row * width
+    end = facet + 1
+    end[end == n_contour[row]] = 0
+    own = _quality(flat.take(first + facet), flat.take(first + end), flat.take(first + vertex))
+    worst, mean = np.where(np.isfinite(values), values, 0).T
     acceptable = (worst > 0) & (own > _FLAT)
-    stuck = np.bincount(row[acceptable], minlength=len(points)) == 0
+    stuck = np.bincount(row, acceptable, len(points)) == 0
     value = np.minimum(worst, own) + np.clip(mean, 0, 1) + _OWN_WEIGHT * own
     value = np.where(stuck[row], own, np.where(acceptable, value, -1))
-    scores = np.zeros((len(points), starts.shape[1] - 1, points.shape[1]), dtype=np.int32)
-    scores[row, facet, vertex] = (value * 2**_BITS).astype(np.int32) + 1
-    return scores, np.flatnonzero(stuck)
+    scores = np.zeros(len(points) * n_facets * width, dtype=np.int32)
+    scores[(row * n_facets + facet) * width + vertex] = (value * 2**_BITS).astype(np.int32) + 1
+    return scores.reshape(-1, n_facets, width), np.flatnonzero(stuck)
 
 
-def _facet_quality(points: np.ndarray, starts: np.ndarray) -> np.ndarray:
-    """`element_quality` of each facet with each vertex, 0 where it is not positive: (B, F, V) float64."""
-    x, y = points.transpose(2, 0, 1)
-    dx = x[:, None] - np.take_along_axis(x, starts, axis=1)[..., None]
-    dy = y[:, None] - np.take_along_axis(y, starts, axis=1)[..., None]
-    double_area = dx[:, :-1] * dy[:, 1:] - dx[:, 1:] * dy[:, :-1]
-    squared = dx * dx + dy * dy
-    sides = squared[:, :-1] + squared[:, 1:] + np.take_along_axis(squared[:, :-1], starts[:, 1:, None], axis=2)
-    return 2 * np.sqrt(3) * np.maximum(double_area, 0) / np.maximum(sides, np.finfo(float).tiny)
+def _quality(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """`element_quality` of triangles with corners (P,), complex numbers, 0 where it is not positive: (P,) float64."""
+    ab, ac, bc = b - a, c - a, c - b
+    double_area = ac.real * bc.imag - bc.real * ac.imag
+    squared = sum(side.real**2 + side.imag**2 for side in (ac, bc, ab))
+    return 2 * np.sqrt(3) * np.maximum(double_area, 0) / np.maximum(squared, np.finfo(float).tiny)
 
 
-def _exclude(
-    scores: np.ndarray,
-    signs: np.ndarray,
-    starts: np.ndarray,
+def _excluded(
+    sides: np.ndarray,
+    bits: np.ndarray,
     rows: np.ndarray,
     facet: np.ndarray,
+    end: np.ndarray,
     vertex: np.ndarray,
-    used_up: np.ndarray,
     n_contour: np.ndarray,
-) -> None:
-    """Set to 0 the entries (n, F, V) that are impossible beside the new element (facet, vertex) of each contour."""
+) -> np.ndarray:
+    """Entries that are impossible beside the new element (facet, vertex) of contours `rows` (n,): words (F, n)."""
     index = np.arange(len(rows))
-    crossed = crossed_edges(signs, starts, rows, facet, vertex)
-    crossed |= crossed_edges(signs, starts, rows, facet + 1, vertex)
-    excluded = crossed[:, :-1] | crossed[:, 1:] | used_up[..., None]
-    excluded[index, facet] = True
+    to_corners = lines_to(sides, rows, np.array([facet, end, vertex]))
+    place = (rows * sides.shape[1] + vertex) * sides.shape[2] + facet
+    edges = sides.reshape(-1, 2).take([place, place + 1], axis=0).transpose(0, 2, 1)
+    crossed = crossing(to_corners[:2], to_corners[2:], edges, bits[rows, vertex][None])
+    excluded = crossed[:-1] | crossed[1:]
+    excluded[facet, index] = ~(crossed[0] ^ crossed[0])
     # Elements on the same side of one of the new edges.
-    index = np.flatnonzero(vertex < n_contour)
-    a, b, v, n = (values[index] for values in (facet, starts[rows, facet + 1], vertex, n_contour))
-    excluded[index, v, b] = True
-    excluded[index, (v - 1) % n, a] = True
-    scores[excluded] = 0
+    on_contour = vertex < n_contour
+    excluded[np.where(on_contour, vertex, facet), index] |= bits[rows, end]
+    excluded[np.where(on_contour, vertex - 1, facet) % n_contour, index] |= bits[rows, facet]
+    return excluded
 
 
 def _in_order(triangles: np.ndarray, owner: np.ndarray, width: int) -> tuple[np.ndarray, np.ndarray]:
     """Triangles sorted by owner, then by vertices, whatever way they were found; the smallest vertex comes first."""
-    first = triangles.argmin(axis=1)
-    triangles = np.take_along_axis(triangles, (first[:, None] + np.arange(3)) % 3, axis=1).astype(np.int32)
-    key = ((owner.astype(np.int64) * width + triangles[:, 0]) * width + triangles[:, 1]) * width + triangles[:, 2]
-    order = np.argsort(key)
-    return triangles[order], owner[order]
+    a, b, c = triangles.astype(np.int64).T
+    code = np.minimum(np.minimum((a * width + b) * width + c, (b * width + c) * width + a), (c * width + a) * width + b)
+    key = np.sort(owner.astype(np.int64) * width**3 + code)
+    parts = []
+    for _ in range(3):
+        rest = key // width
+        parts.append(key - rest * width)
+        key = rest
+    return np.stack(parts[::-1], axis=1).astype(np.int32), key.astype(np.int32)

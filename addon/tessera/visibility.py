@@ -1,20 +1,38 @@
-"""Which elements are possible: exact signs of all triangles on contour vertices, and the tests made of them.
+"""Which elements are possible: on which side of all lines through a contour vertex all vertices lie, and the tests.
 
-Every decision of the triangulation is taken from exact signs, so no two decisions can contradict each other. They are
+Every decision of the triangulation is taken from these sides, so no two decisions can contradict each other. They are
 computed once a recursion level, as batched products of small matrices in single precision; what the error bound leaves
-open goes to `predicates.orientation`.
+open goes to `predicates.orientation`. They are kept as words, one bit for each vertex, and one operation on words tests
+a line or a triangle against all vertices at once. Arrays of words that much is done with have the contours last, as
+operations on long rows are fast.
+
+Words are unsigned integers or, for more than 64 bits, Python's own in object arrays: the same operators, only slower.
 """
 
 import numpy as np
 
 from .predicates import orientation
 
-# Signs are first taken in single precision, u = 2^-24, with a contour's largest offset as unit. An offset is off by at
-# most 2 u of itself, one of them is scaled (another u), a product adds u, their difference u: 6 u (|left| + |right|) in
-# all. The bound is 8 u = 2^-21 of a number that is at least |left| + |right|.
-_ERROR_BOUND = 2.0**-21
-# Signs computed at a time, so that the temporaries stay in the processor's cache.
+# Single precision, u = 2^-24, with every contour moved and stretched into [-1, 1]². Rounding a vertex changes a
+# determinant by at most 4 u, so three do by 12 u. Of its three products, those of a coordinate and a coefficient are
+# below 2 with an error of 4 u each, the constant term has 4 u, and adding them, in whatever order, has less than 12 u.
+# The bound is nearly twice the sum, 36 u.
+_ERROR_BOUND = np.float32(2.0**-18)
+# Determinants computed at a time, so that they stay in the processor's cache.
 _BLOCK_SIZE = 1 << 17
+
+
+def bits_of(n_bits: int) -> np.ndarray:
+    """Words (n_bits,), the i-th with bit i set; of the smallest type that holds them all."""
+    for dtype in (np.uint8, np.uint16, np.uint32, np.uint64):
+        if n_bits <= 8 * np.dtype(dtype).itemsize:
+            return np.left_shift(dtype(1), np.arange(n_bits, dtype=dtype))
+    return np.array([1 << bit for bit in range(n_bits)], dtype=object)
+
+
+def as_bools(words: np.ndarray, bits: np.ndarray) -> np.ndarray:
+    """Words (...) as (..., len(bits)) bool."""
+    return (words[..., None] & bits) != 0
 
 
 def edge_starts(n_contour: np.ndarray) -> np.ndarray:
@@ -26,100 +44,151 @@ def edge_starts(n_contour: np.ndarray) -> np.ndarray:
     return np.where(index < n_contour[:, None], index, 0)
 
 
-def edge_signs(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray) -> np.ndarray:
-    """Side of every vertex relative to every line through a contour vertex and another vertex, exact.
+def vertex_sides(points: np.ndarray, n_vertices: np.ndarray) -> np.ndarray:
+    """Which vertices lie left and which right of every line through two vertices, exact.
 
-    points: (B, V, 2) float64, rows of contour vertices, then inner vertices, then padding; n_contour, n_inner: (B,).
-    Returns signs (B, V, F + 1, V) int8, F = max n_contour: `signs[:, x, k, v]` is +1 if x lies left of the line from
-    the k-th of `edge_starts` to v, 0 on it. Entries of padding are 0.
+    points: (B, V, 2) float64, rows of n_vertices (B,) distinct vertices, then padding. Returns words (B, V, V, 2): bit
+    x of `sides[:, v, u, 0]` is set if vertex x lies strictly left of the line from u to v, and of `sides[:, v, u, 1]`
+    if strictly right. Padding is on no side; lines through padding mean nothing.
     """
-    starts = edge_starts(n_contour)
     n_rows, width = points.shape[:2]
-    vertex = np.arange(width)
-    present = vertex < (n_contour + n_inner)[:, None]
-    points = np.where(present[..., None], points, points[:, :1])
-    pair = (starts[..., None] != vertex) & present[:, None]
-    pair &= (np.arange(starts.shape[1]) <= n_contour[:, None])[..., None]
-    signs = np.empty((n_rows, width, starts.shape[1], width), dtype=np.int8)
-    block = max(1, _BLOCK_SIZE // (signs[:1].size))
+    bits = bits_of(width)
+    present = np.arange(width) < n_vertices[:, None]
+    coordinates = np.where(present[:, None], points.transpose(0, 2, 1), points[:, 0, :, None])
+    low, high = coordinates.min(axis=2, keepdims=True), coordinates.max(axis=2, keepdims=True)
+    middle, half = low + (high - low) / 2, (high - low) / 2
+    vertices = np.zeros((n_rows, 3, padded_size(width)), dtype=np.float32)
+    vertices[:, :2, :width] = (coordinates - middle) / np.where(half > 0, half, 1)
+    vertices[:, 2, :width] = present
+    # Each line is looked at in one direction. It has (x, y) on its left if (b - d) x + (c - a) y + (a d - b c) > 0.
+    u, v = np.triu_indices(width, 1)
+    (a, b), (c, d) = (vertices[:, :2].take(ends, axis=2).transpose(1, 0, 2) for ends in (u, v))
+    lines = np.stack([b - d, c - a, a * d - b * c], axis=1).transpose(0, 2, 1)
+    vertices[:, :2, :width] *= present[:, None]
+    n_lines = len(u)
+    # Left of all lines, right of them, and nothing.
+    words = np.zeros((n_rows, 2 * n_lines + 1), dtype=bits.dtype)
+    block = max(1, _BLOCK_SIZE // (n_lines * vertices.shape[2]))
     for first in range(0, n_rows, block):
         rows = slice(first, first + block)
-        _block_signs(points[rows], starts[rows], pair[rows], signs[rows])
-    return signs
+        determinant = lines[rows] @ vertices[rows]
+        words[rows, :n_lines] = pack_words(determinant > _ERROR_BOUND, bits.dtype)
+        words[rows, n_lines:-1] = pack_words(determinant < -_ERROR_BOUND, bits.dtype)
+    _decide_doubtful(words[:, :n_lines], words[:, n_lines:-1], points, u, v, present, bits)
+    place = np.full((width, width, 2), 2 * n_lines)
+    place[v, u, 0] = place[u, v, 1] = np.arange(n_lines)
+    place[v, u, 1] = place[u, v, 0] = n_lines + np.arange(n_lines)
+    return words.take(place, axis=1)
 
 
-def _block_signs(points: np.ndarray, starts: np.ndarray, pair: np.ndarray, signs: np.ndarray) -> None:
-    """Fill `signs`, the result of `edge_signs`, for a few contours; pair (B, F + 1, V): two different vertices."""
-    x, y = np.ascontiguousarray(points.transpose(2, 0, 1))
-    unit = np.maximum(np.ptp(x, axis=1), np.ptp(y, axis=1))[:, None, None]
-    n_rows, width, n_starts = signs.shape[:3]
-    to_vertex = np.empty((n_rows, width, 2, width), dtype=np.float32)
-    to_vertex[:, :, 0] = (y[:, None] - y[:, :, None]) / unit
-    to_vertex[:, :, 1] = (x[:, None] - x[:, :, None]) / unit
-    start_x = (np.take_along_axis(x, starts, axis=1)[:, None] - x[:, :, None]) / unit
-    start_y = (np.take_along_axis(y, starts, axis=1)[:, None] - y[:, :, None]) / unit
-    bound = _ERROR_BOUND * (np.abs(start_x) + np.abs(start_y))
-    bound[bound == 0] = 1
-    to_start = np.empty((n_rows, width, n_starts, 2), dtype=np.float32)
-    to_start[..., 0] = start_x / bound
-    to_start[..., 1] = -start_y / bound
-    # (start - x) × (vertex - x), in units of the error bound
-    determinant = to_start @ to_vertex
-    np.subtract((determinant > 1).view(np.int8), (determinant < -1).view(np.int8), out=signs)
-    distinct = pair[:, None] & pair.transpose(0, 2, 1)[..., None]
-    vertex = np.arange(width)
-    distinct[:, vertex, :, vertex] = False
-    signs *= distinct.view(np.int8)
-    distinct &= signs == 0
-    doubtful = np.flatnonzero(distinct)
-    if len(doubtful):
-        row, third, k, v = np.unravel_index(doubtful, signs.shape)
-        signs[row, third, k, v] = orientation(points[row, starts[row, k]], points[row, v], points[row, third])
+def padded_size(n_bits: int) -> int:
+    """How many bools `pack_words` wants for a word of so many bits."""
+    return max(8, 1 << (n_bits - 1).bit_length())
 
 
-def facet_sides(signs: np.ndarray, starts: np.ndarray) -> np.ndarray:
-    """Side of every vertex relative to every facet: (B, V, F) int8, +1 on the inner side, 0 for padding."""
-    return np.take_along_axis(signs[:, :, :-1], starts[:, None, 1:, None], axis=3)[..., 0]
+def pack_words(bools: np.ndarray, dtype: np.dtype) -> np.ndarray:
+    """Words (...) of contiguous bools (..., `padded_size`)."""
+    packed = np.packbits(bools.reshape(-1), bitorder="little")
+    if not dtype.hasobject:
+        return packed.view(dtype.newbyteorder("<")).reshape(bools.shape[:-1])
+    parts = packed.view("<u8").reshape(-1, bools.shape[-1] // 64).astype(object)
+    return np.bitwise_or.reduce(parts << np.arange(0, bools.shape[-1], 64), axis=1).reshape(bools.shape[:-1])
 
 
-def possible_elements(signs: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray) -> np.ndarray:
-    """Which entries of the connection table can be elements: (B, F, V) bool.
+def _decide_doubtful(
+    left: np.ndarray,
+    right: np.ndarray,
+    points: np.ndarray,
+    u: np.ndarray,
+    v: np.ndarray,
+    present: np.ndarray,
+    bits: np.ndarray,
+) -> None:
+    """Set the bits in `left` and `right` (B, L) of lines u -> v (L,) that single precision has left open.
+
+    present: (B, V), which vertices are no padding.
+    """
+    width = len(bits)
+    doubtful = ~(left | right)
+    doubtful &= np.bitwise_or.reduce(present * bits, axis=1)[:, None]
+    doubtful &= ~(bits[u] | bits[v])
+    # Most lines have nothing doubtful, or run through padding.
+    open_lines = np.flatnonzero((doubtful != 0) & present.take(v, axis=1))
+    if not len(open_lines):
+        return
+    row, line = np.unravel_index(open_lines, left.shape)
+    index, third = np.nonzero(as_bools(doubtful[row, line], bits))
+    # Each triangle is looked at once, whatever line and vertex it comes from.
+    a, b = u[line[index]], v[line[index]]
+    even = (third < a) == (third < b)
+    a, b, c = np.minimum(a, third), np.clip(third, a, b), np.maximum(b, third)
+    key, place = np.unique(((row[index] * width + a) * width + b) * width + c, return_inverse=True)
+    key, c = np.divmod(key, width)
+    key, b = np.divmod(key, width)
+    owner, a = np.divmod(key, width)
+    turn = orientation(points[owner, a], points[owner, b], points[owner, c])[place] * np.where(even, 1, -1)
+    for side, sign in ((left, 1), (right, -1)):
+        found = np.zeros((len(row), width), dtype=bool)
+        found[index, third] = turn == sign
+        side[row, line] |= np.bitwise_or.reduce(found * bits, axis=1)
+
+
+def edge_sides(sides: np.ndarray, owner: np.ndarray, slots: np.ndarray, n_contour: np.ndarray) -> np.ndarray:
+    """The part of `vertex_sides` that is about lines from contour vertices of (sub-)contours: words (B, V, K, 2).
+
+    owner (B,), slots (B, V): whose vertices they have, and which. `[:, v, k]` is about the line from the k-th of
+    `edge_starts` to vertex v, K = max n_contour + 1; the bits stay those of the owner's vertices.
+    """
+    width = sides.shape[1]
+    starts = np.take_along_axis(slots, edge_starts(n_contour), axis=1)
+    place = ((owner[:, None] * width + slots) * width)[..., None] + starts[:, None]
+    return sides.reshape(-1, 2).take(place, axis=0)
+
+
+def lines_to(sides: np.ndarray, rows: np.ndarray, vertices: np.ndarray) -> np.ndarray:
+    """The part of `edge_sides` that is about lines to `vertices` (m, n) of contours `rows` (n,): words (m, K, 2, n)."""
+    found = sides.reshape(-1, 2 * sides.shape[2]).take((rows * sides.shape[1] + vertices).T, axis=0)
+    return _contours_last(found).reshape(-1, *sides.shape[2:], len(rows))
+
+
+def _contours_last(words: np.ndarray) -> np.ndarray:
+    return np.ascontiguousarray(words.reshape(len(words), -1).T)
+
+
+def possible_elements(sides: np.ndarray, bits: np.ndarray, n_contour: np.ndarray) -> np.ndarray:
+    """Which entries of the connection table can be elements: words (F, B), the bit of vertex v of facet f.
 
     Facet f and vertex v form an element if the triangle has positive area, its closure holds no vertex but its own
-    three, and its two new edges cross no facet.
+    three, and its two new edges cross no facet. sides: `edge_sides`; bits: (B, V) words of the vertices, 0 for padding.
     """
-    starts = edge_starts(n_contour)
-    sides = facet_sides(signs, starts)
-    facet, vertex = np.arange(sides.shape[2]), np.arange(signs.shape[1])
-    present = vertex < (n_contour + n_inner)[:, None]
-    other = (vertex[:, None] != facet) & (vertex[:, None] != starts[:, None, 1:]) & present[..., None]
-    # x in the closed triangle (a, b, v): on the left of or on a -> b, b -> v and v -> a.
-    within = (signs[:, :, :-1] <= 0) & (signs[:, :, 1:] >= 0)
-    within &= ((sides >= 0) & other)[..., None]
-    within[:, vertex, :, vertex] = False
-    crossed = _crossing_contour(signs, sides, starts)
-    return (sides.transpose(0, 2, 1) > 0) & ~within.any(axis=1) & ~crossed[:, :-1] & ~crossed[:, 1:]
+    ends = edge_starts(n_contour)[:, 1:].T
+    n_rows, n_facets = len(sides), len(ends)
+    rows, facets, bits = np.arange(n_rows), np.arange(n_facets), bits.T.copy()
+    to_ends = lines_to(sides, rows, ends)
+    end_bits = bits[ends, rows]
+    edges = to_ends[facets, facets]
+    # x is in the closed triangle (a, b, v) if it is on the left of or on a -> b, and v neither left of b -> x nor right
+    # of a -> x. So the vertices that x leaves free are:
+    to_all = _contours_last(sides).reshape(*sides.shape[1:], n_rows)
+    free = to_all[:, 1:, 0] | to_all[:, :-1, 1]
+    free |= bits[:, None]
+    on_side = ~(edges[:, 1] | bits[:n_facets] | end_bits)
+    free |= -((on_side & bits[:, None]) == 0).astype(bits.dtype)
+    crossed = crossing(to_all[:n_facets], to_ends, edges, end_bits)
+    possible = edges[:, 0] & np.bitwise_and.reduce(free, axis=0) & ~(crossed[:-1] | crossed[1:])
+    return possible & np.bitwise_or.reduce(bits, axis=0)
 
 
-def _crossing_contour(signs: np.ndarray, sides: np.ndarray, starts: np.ndarray) -> np.ndarray:
-    """Which edges from a contour vertex a to a vertex v properly cross a facet: (B, F + 1, V) bool."""
-    # Do the facet's ends lie on different sides of edge (a, v), and a and v on different sides of the facet?
-    rows = np.arange(len(starts))[:, None]
-    ends_apart = signs[:, : sides.shape[2]] * signs[rows, starts[:, 1:]] < 0
-    sides_of = sides.transpose(0, 2, 1)
-    ends_apart &= sides[rows, starts].transpose(0, 2, 1)[..., None] * sides_of[:, :, None] < 0
-    return ends_apart.any(axis=1)
+def crossing(to_start: np.ndarray, to_end: np.ndarray, edges: np.ndarray, end_bits: np.ndarray) -> np.ndarray:
+    """Which lines from contour vertices properly cross one of m edges: words (K, n), the bit of v of start k.
 
-
-def crossed_edges(
-    signs: np.ndarray, starts: np.ndarray, row: np.ndarray, start: np.ndarray, end: np.ndarray
-) -> np.ndarray:
-    """Which edges (a, v) of contours `row` properly cross the contour's edge from `start` to `end`: (n, F + 1, V) bool.
-
-    row, start, end: (n,); start: index into `edge_starts`; end: vertex.
+    to_start, to_end (m, K, 2, n): `lines_to` the edges' vertices; edges (m, 2, n): the vertices left and right of the
+    edge; end_bits (m, n): the bit of its second vertex.
     """
-    side = signs[row, :, start, end]
-    side_of_starts = np.take_along_axis(side, starts[row], axis=1)
-    end_vertex = signs[row, end]
-    start_vertex = signs[row, starts[row, start]]
-    return (start_vertex * end_vertex < 0) & (side_of_starts[..., None] * side[:, None] < 0)
+    # With k left of s -> e, the line from k to v crosses if v is right of s -> e, left of k -> s and right of k -> e;
+    # k is left if e is left of k -> s.
+    on_side = (to_start & end_bits[:, None, None]) != 0
+    crossed = on_side * (to_start & to_end[:, :, ::-1])
+    crossed &= edges[:, None, ::-1]
+    crossed = np.bitwise_or.reduce(crossed, axis=0)
+    return crossed[:, 0] | crossed[:, 1]

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 from tessera.triangulation import triangulate
-from tessera.visibility import edge_signs, edge_starts, possible_elements
+from tessera.visibility import as_bools, bits_of, edge_sides, possible_elements, vertex_sides
 from tests.library.adversaries import (
     TABLES,
     batches,
@@ -21,8 +21,8 @@ from tests.library.adversaries import (
     tables,
     with_straight_runs,
 )
-from tests.library.polygons import seeds, staircase
-from tests.validity import exact_double_area
+from tests.library.polygons import seeds, staircase, star
+from tests.validity import check_many, exact_double_area
 
 
 @settings(max_examples=60, suppress_health_check=list(HealthCheck), deadline=None)
@@ -58,7 +58,7 @@ def test_a_mesh_does_not_depend_on_its_batch(name):
 
 
 def test_one_call_rates_all_contours_of_a_level():
-    members = mixed_batch(30)
+    members = [member for member in mixed_batch(40) if len(np.concatenate(member)) <= 32]
 
     def levels(members):
         calls = []
@@ -83,29 +83,44 @@ def test_chunks_do_not_change_meshes(monkeypatch):
     assert meshes(members, scattered) == together
 
 
+@pytest.mark.parametrize(("n", "m"), [(20, 20), (40, 10), (30, 40)])
+def test_words_of_any_size(n, m):
+    members = [(star(n, 0.8), inner_vertices(star(n, 0.8), 0, m)), (sector(1), np.zeros((0, 2)))]
+    batch = padded(members)
+    result = triangulate(*batch, scattered)
+    check_many(*batch, result.triangles, result.owner)
+
+
 @given(placed_contours, seeds)
 def test_signs_are_exact(polygon, seed):
     points, n_contour, n_inner = padded([(polygon, inner_vertices(polygon, seed, 3))], extra=1)
-    signs, starts = edge_signs(points, n_contour, n_inner)[0], edge_starts(n_contour)[0]
-    rng = np.random.default_rng(seed)
     n = int(n_contour[0] + n_inner[0])
+    left, right = as_bools(vertex_sides(points, np.array([n]))[0], bits_of(points.shape[1])).transpose(2, 1, 0, 3)
+    rng = np.random.default_rng(seed)
     for _ in range(60):
-        x, v = rng.integers(n, size=2)
-        k = int(rng.integers(len(starts)))
-        assert signs[x, k, v] == np.sign(exact_double_area(points[0, starts[k]], points[0, v], points[0, x]))
-    assert not signs[n:].any() and not signs[:, :, n:].any()
+        u, v, x = rng.integers(n, size=3)
+        sign = np.sign(exact_double_area(*points[0, [u, v, x]]))
+        assert (left[u, v, x], right[u, v, x]) == (sign > 0, sign < 0)
+    assert not left[..., n:].any() and not right[..., n:].any()
+
+
+def possible_table(points, n):
+    width, n_contour = points.shape[1], np.array([n])
+    sides, bits = vertex_sides(points, np.array([width])), bits_of(width)
+    sides = edge_sides(sides, np.array([0]), np.arange(width)[None], n_contour)
+    return as_bools(possible_elements(sides, bits[None], n_contour)[:, 0], bits)
 
 
 def test_possible_elements_of_a_square_with_its_centre():
     points = np.array([[[0, 0], [2, 0], [2, 2], [0, 2], [1, 1]]], dtype=float)
-    possible = possible_elements(edge_signs(points, np.array([4]), np.array([1])), np.array([4]), np.array([1]))[0]
+    possible = possible_table(points, 4)
     assert np.array_equal(np.argwhere(possible), [[0, 4], [1, 4], [2, 4], [3, 4]])
 
 
 def test_facets_behind_others_are_not_connected():
     # A U: the tip of one arm is hidden from the other arm's outer side.
     points = np.array([[[0, 0], [3, 0], [3, 3], [2, 3], [2, 1], [1, 1], [1, 3], [0, 3]]], dtype=float)
-    possible = possible_elements(edge_signs(points, np.array([8]), np.array([0])), np.array([8]), np.array([0]))[0]
+    possible = possible_table(points, 8)
     assert np.flatnonzero(possible[1]).tolist() == [3, 4]
     assert np.flatnonzero(possible[0]).tolist() == [4, 5]
 
