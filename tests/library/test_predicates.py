@@ -27,6 +27,18 @@ def test_nearly_collinear_points_have_the_exact_sign(seed, scale, offset):
     assert orientation(a, b, c).tolist() == [exact_sign(*p) for p in zip(a, b, c, strict=True)]
 
 
+def test_every_stage_of_orientation_is_exact():
+    # Collinear by exact differences, by inexact ones, bent by the last bits, and by less than the smallest product.
+    line = np.array([[0.0, 0.0], [3.0, 1.0], [1.5, 0.5]])
+    tiny = np.array([[0.375, 0.375], [-0.625, -0.375], [-0.125, -5e-324]])
+    bent = np.array([[0.1, 0.1], [0.7, 0.7], [0.3, 0.3]])
+    far = np.array([[0.0, 1e-200], [1.0, 1e-200], [3e-300, 0.0]])
+    moved = bent + [[0, 0], [0, 0], [0, 5.6e-17]]
+    triangles = np.array([line, line / 3, line * 1e6 + 0.1, tiny, bent, moved, far, line * 1e-160])
+    triangles = np.concatenate([triangles, triangles[:, ::-1], triangles[:, [1, 2, 0]]])
+    assert orientation(*triangles.transpose(1, 0, 2)).tolist() == [exact_sign(*corners) for corners in triangles]
+
+
 def test_orientation_broadcasts_and_handles_tiny_and_axis_parallel_points():
     grid = np.array([[0, 0], [1, 0], [2, 0], [0, 1]], dtype=float)
     assert orientation(grid[0], grid[1], grid).tolist() == [0, 0, 0, 1]
