@@ -85,16 +85,13 @@ def add_elements(boundaries: Boundaries, row: np.ndarray, facet: np.ndarray, ver
     between = np.where(at < bit, ~between, between)
     cavity |= after
     part = np.where(at != 0, cavity & between, at)
-    boundaries.cavity[row, own] = _closed(cavity ^ part)
-    boundaries.cavity[row, number] = _closed(part)
+    left = np.array([cavity ^ part, part])
+    # Two edges there and back are an edge between two elements: nothing of the cavity is left.
+    without_lowest = left & (left - 1)
+    left *= without_lowest & (without_lowest - 1) != 0
+    boundaries.cavity[row, own], boundaries.cavity[row, number] = left
     boundaries.from_vertex[row, vertex] |= after
     boundaries.apex[row, facet] = vertex
-
-
-def _closed(places: np.ndarray) -> np.ndarray:
-    """Two edges there and back are an edge between two elements: nothing of the cavity is left."""
-    without_lowest = places & (places - 1)
-    return places * (without_lowest & (without_lowest - 1) != 0)
 
 
 def sub_contours(

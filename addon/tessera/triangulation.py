@@ -54,6 +54,7 @@ mesh does not depend on the batch that its contour is in.
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -80,8 +81,8 @@ _OWN_WEIGHT = 0.05
 _FLAT = 1e-5
 # Where contours are divided by their number of vertices into groups of a level.
 _SIZES = (5, 7, 10, 14, 20)
-# Below this number of contours, calls cost more than padding, and a level is one group.
-_FEW = 32
+# So few contours join those of the next size, as calls cost more than padding.
+_FEW = 128
 # Size in bytes of the sign tensor that is held at a time.
 _CHUNK_SIZE = 1 << 26
 
@@ -175,11 +176,13 @@ def _view(contours: Contours, sides: np.ndarray, bits: np.ndarray) -> tuple[np.n
 
 def _by_size(contours: Contours) -> tuple[Contours, list[Contours]]:
     """The contours, those of similar size one after the other, and in groups, so that padding wastes little."""
-    size = np.digitize(contours.n_contour + contours.n_inner, _SIZES if len(contours.owner) > _FEW else [])
-    order = np.argsort(size, kind="stable")
-    contours = contours.rows(order)
-    ends = np.cumsum(np.bincount(size))
-    return contours, [contours.rows(slice(*pair)) for pair in zip([0, *ends], ends, strict=False) if np.diff(pair)]
+    size = np.digitize(contours.n_contour + contours.n_inner, _SIZES)
+    contours = contours.rows(np.argsort(size, kind="stable"))
+    ends = [0]
+    for end in np.cumsum(np.bincount(size)):
+        if end - ends[-1] >= _FEW or end == len(size) > ends[-1]:
+            ends.append(end)
+    return contours, [contours.rows(slice(*pair)) for pair in pairwise(ends)]
 
 
 def _ask(
@@ -199,11 +202,11 @@ def _ask(
             raise ValueError(f"contour {contour} is no simple counter-clockwise polygon with its inner vertices inside")
         possible.append(words)
         entries.append(_entries(words, bits))
-    first = np.cumsum([0] + [len(group.owner) for group in groups])
-    shifted = [part.T + [row, 0, 0] for part, row in zip(entries, first, strict=False)]
-    values = connect(level.points, level.n_contour, level.n_inner, np.concatenate(shifted))
-    ends = np.cumsum([part.shape[1] for part in entries])
-    return list(zip(possible, entries, np.split(values, ends[:-1]), strict=True))
+    together = np.concatenate(entries, axis=1)
+    sizes = [part.shape[1] for part in entries]
+    together[0] += np.repeat(np.cumsum([0] + [len(group.owner) for group in groups[:-1]]), sizes)
+    values = connect(level.points, level.n_contour, level.n_inner, together.T)
+    return list(zip(possible, entries, np.split(values, np.cumsum(sizes[:-1])), strict=True))
 
 
 def _entries(possible: np.ndarray, bits: np.ndarray) -> np.ndarray:
@@ -246,18 +249,20 @@ def _connect_facets(
             best, vertices, chosen, possible = (part[:, going] for part in (best, vertices, chosen, possible))
         if not len(rows):
             break
-        vertex = vertices[facet, np.arange(len(rows))]
-        end = (facet + 1) % n_contour[rows]
+        index, n = np.arange(len(rows)), n_contour[rows]
+        vertex, end = vertices[facet, index], (facet + 1) % n
         elements.append([rows, facet, end, vertex])
         add_elements(boundaries, rows, facet, vertex, number)
-        possible = possible & ~_excluded(sides, bits, rows, facet, end, vertex, n_contour[rows])
+        possible = possible & ~_excluded(sides, bits, rows, facet, end, vertex, n)
+        possible[facet, index] = 0
         best = best * (possible != 0)
-        facet, index = np.nonzero((best > 0) & (possible & chosen == 0))
-        row = rows[index]
-        rest = scores[row, facet] * ((possible[facet, index, None] & bits[row]) != 0)
-        vertices[facet, index] = vertex = rest.argmax(axis=1)
-        chosen[facet, index] = bits[row, vertex]
-        best[facet, index] = rest[np.arange(len(rest)), vertex]
+        facet, index = np.nonzero((possible & chosen == 0) & (best > 0))
+        if len(index):
+            row = rows[index]
+            rest = scores[row, facet] * ((possible[facet, index, None] & bits[row]) != 0)
+            vertices[facet, index] = vertex = rest.argmax(axis=1)
+            chosen[facet, index] = bits[row, vertex]
+            best[facet, index] = rest[np.arange(len(rest)), vertex]
         if number == 1 and len(stuck):
             best[:, np.isin(rows, stuck)] = 0
     row, *corners = np.concatenate(elements, axis=1)
@@ -305,18 +310,21 @@ def _excluded(
     vertex: np.ndarray,
     n_contour: np.ndarray,
 ) -> np.ndarray:
-    """Entries that are impossible beside the new element (facet, vertex) of contours `rows` (n,): words (F, n)."""
-    index = np.arange(len(rows))
+    """Entries of other facets that are impossible beside the new element (facet, vertex) of contours `rows` (n,).
+
+    end (n,): the facet's second vertex. Returns words (F, n).
+    """
     to_corners = lines_to(sides, rows, np.array([facet, end, vertex]))
     place = (rows * sides.shape[1] + vertex) * sides.shape[2] + facet
     edges = sides.reshape(-1, 2).take([place, place + 1], axis=0).transpose(0, 2, 1)
     crossed = crossing(to_corners[:2], to_corners[2:], edges, bits[rows, vertex][None])
     excluded = crossed[:-1] | crossed[1:]
-    excluded[facet, index] = ~(crossed[0] ^ crossed[0])
-    # Elements on the same side of one of the new edges.
-    on_contour = vertex < n_contour
-    excluded[np.where(on_contour, vertex, facet), index] |= bits[rows, end]
-    excluded[np.where(on_contour, vertex - 1, facet) % n_contour, index] |= bits[rows, facet]
+    # Elements on the same side of one of the new edges; an inner vertex has no facets.
+    (index,) = np.nonzero(vertex < n_contour)
+    if len(index):
+        row, vertex = rows[index], vertex[index]
+        excluded[vertex, index] |= bits[row, end[index]]
+        excluded[(vertex - 1) % n_contour[index], index] |= bits[row, facet[index]]
     return excluded
 
 
