@@ -10,11 +10,13 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 
 import tessera
-from tessera import networks, placement
+from tessera import networks
 from tessera.assembly import mean_edge_lengths, mesh_cells
 from tessera.boundary import resample
+from tessera.cavity import is_inside
 from tessera.contour import clean_loop
 from tessera.division import divide
+from tessera.placement import place_inner_vertices
 from tessera.stopwatch import Stopwatch
 from tessera.transform import superimpose
 
@@ -59,12 +61,12 @@ def draw_scores(ax: Axes, contour: np.ndarray) -> None:
     length = np.linalg.norm(contour - np.roll(contour, 1, axis=0), axis=1).mean()
     l_s = length * transformation.scale
     count = networks.count_inner_vertices(transformed, n_contour, l_s)
-    places, _ = placement.place_inner_vertices(transformed, n_contour, count, l_s)
+    places, _ = place_inner_vertices(transformed, n_contour, count, Stopwatch())
     low, high = transformed[0].min(axis=0), transformed[0].max(axis=0)
-    x, y = np.meshgrid(np.linspace(low[0], high[0], 120), np.linspace(low[1], high[1], 120))
-    grid = np.stack([x.ravel(), y.ravel()], axis=1)[None]
-    scores = networks.score_grid(transformed, n_contour, count, l_s, grid, np.array([grid.shape[1]]))
-    inside = placement.is_inside(grid, transformed, n_contour)
+    x, y = np.meshgrid(np.linspace(low[0], high[0], 48), np.linspace(low[1], high[1], 48))
+    grid = np.stack([x.ravel(), y.ravel()])[None]
+    scores = networks.score_grid(transformed, n_contour, count, grid, np.array([grid.shape[2]]))
+    inside = is_inside(np.swapaxes(grid, 1, 2), transformed, n_contour)
     ax.contourf(x, y, np.where(inside, scores, np.nan).reshape(x.shape), levels=18, cmap="YlGnBu_r")
     ax.plot(*np.vstack([transformed[0], transformed[0, :1]]).T, "-o", color=LINE, ms=3, lw=1)
     ax.plot(*places[0].T, "o", color="#e63946", ms=5)

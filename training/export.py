@@ -22,7 +22,7 @@ from .networks import ROLES
 
 INPUTS = {
     "nn1": ["contour", "n_contour", "l_s"],
-    "nn2_scores": ["contour", "n_contour", "n_inner", "l_s", "grid"],
+    "nn2_scores": ["contour", "n_contour", "n_inner", "grid"],
     "nn2_moves": ["contour", "n_contour", "inner", "n_inner"],
     "nn3": ["contour", "n_contour", "inner", "n_inner", "entries"],
 }
@@ -31,9 +31,9 @@ AXES = {
     "n_contour": {0: "batch"},
     "n_inner": {0: "batch"},
     "l_s": {0: "batch"},
-    "grid": {0: "batch", 1: "points"},
+    "grid": {0: "batch", 2: "points"},
     "inner": {0: "batch", 1: "vertices"},
-    "entries": {0: "entries"},
+    "entries": {1: "entries"},
 }
 TOLERANCE = 1e-4
 
@@ -45,13 +45,13 @@ def sample(rng: np.random.Generator, batch: int, edges: int, vertices: int) -> d
     radius = rng.uniform(0.4, 1.1, (batch, edges))
     contour = np.stack([radius * np.cos(angle), radius * np.sin(angle)], -1)
     n_inner = torch.tensor(rng.integers(1, vertices + 1, batch))
-    entries = np.stack([rng.integers(0, batch, 50), np.zeros(50, int), rng.integers(2, 3, 50)], 1)
+    entries = np.stack([rng.integers(0, batch, 50), np.zeros(50, int), rng.integers(2, 3, 50)])
     return {
         "contour": torch.tensor(contour, dtype=torch.float32),
         "n_contour": n_contour,
         "n_inner": n_inner,
         "l_s": torch.tensor(rng.uniform(0.3, 1, batch), dtype=torch.float32),
-        "grid": torch.tensor(rng.uniform(-1, 1, (batch, 40, 2)), dtype=torch.float32),
+        "grid": torch.tensor(rng.uniform(-1, 1, (batch, 2, 40)), dtype=torch.float32),
         "inner": torch.tensor(rng.uniform(-0.5, 0.5, (batch, vertices, 2)), dtype=torch.float32),
         "entries": torch.tensor(entries),
     }

@@ -12,6 +12,7 @@ import numpy as np
 from tqdm import tqdm
 
 from tessera.placement import place_by_scores
+from tessera.stopwatch import Stopwatch
 
 from . import configuration
 from .data import load
@@ -30,7 +31,7 @@ def main() -> None:
         placed = np.full(examples.inner.shape, np.nan, dtype=np.float32)
         for start in tqdm(range(0, len(examples), BATCH), desc=split):
             part = examples[np.arange(start, min(start + BATCH, len(examples)))]
-            inner, count = place_by_scores(part.contour, part.n_contour, part.n_inner, part.l_s)
+            inner, count = place_by_scores(part.contour, part.n_contour, part.n_inner, Stopwatch())
             whole = np.flatnonzero(count == part.n_inner)
             placed[start + whole] = 0
             placed[start + whole, : inner.shape[1]] = inner[whole]

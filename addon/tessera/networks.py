@@ -16,11 +16,12 @@ import onnxruntime
 
 FOLDER = Path(__file__).resolve().parents[2] / "onnx_models"
 
-# Sizes that contours and inner vertices are padded to.
+# Sizes that contours, inner vertices and grids are padded to.
 _PADDED_EDGES = np.array([4, 8, 12, 16, 24, 32, 48, 64])
 _PADDED_INNER = np.array([1, 2, 4, 8, 12, 16, 24, 32])
-# Pairs of tokens in one call: bounds the memory of the attention.
-_CALL_SIZE = 1 << 19
+_PADDED_GRID = np.array([16, 32, 48, 64, 96, 128, 192, 256, 400, 48 * 48])
+# Points in one call, so that what a network holds at a time stays in the processor's cache.
+_CALL_SIZE = 1 << 12
 
 
 @cache
@@ -28,6 +29,7 @@ def session(role: str) -> onnxruntime.InferenceSession:
     """The session of ``nn1``, ``nn2_scores``, ``nn2_moves`` or ``nn3``; opened once."""
     options = onnxruntime.SessionOptions()
     options.log_severity_level = 3
+    options.intra_op_num_threads = 1
     # Threads that wait by spinning slow everything else down, and calls here are many and short.
     options.add_session_config_entry("session.intra_op.allow_spinning", "0")
     return onnxruntime.InferenceSession(FOLDER / f"{role}.onnx", options, providers=["CPUExecutionProvider"])
@@ -36,7 +38,7 @@ def session(role: str) -> onnxruntime.InferenceSession:
 def count_inner_vertices(contour: np.ndarray, n_contour: np.ndarray, l_s: np.ndarray) -> np.ndarray:
     """NN1: how many inner vertices each contour needs at its scaled target edge length: (B,) int64."""
     count = np.zeros(len(n_contour))
-    for rows, n, _ in _groups(n_contour, np.zeros_like(n_contour), 1):
+    for rows, n, _ in _groups(n_contour, np.zeros_like(n_contour), _PADDED_INNER):
         (count[rows],) = session("nn1").run(
             None,
             {"contour": _single(contour, rows, n), "n_contour": n_contour[rows], "l_s": l_s[rows].astype(np.float32)},
@@ -46,38 +48,30 @@ def count_inner_vertices(contour: np.ndarray, n_contour: np.ndarray, l_s: np.nda
 
 
 def score_grid(
-    contour: np.ndarray,
-    n_contour: np.ndarray,
-    n_inner: np.ndarray,
-    l_s: np.ndarray,
-    grid: np.ndarray,
-    n_grid: np.ndarray,
+    contour: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, grid: np.ndarray, n_grid: np.ndarray
 ) -> np.ndarray:
     """NN2: score of each grid point, its distance to the closest of the inner vertices in even edge lengths.
 
-    grid: (B, M, 2), of which the first n_grid (B,) count. Returns (B, M) float64, inf beyond n_grid.
+    grid: (B, 2, M), of which the first n_grid (B,) points count. Returns (B, M) float32, inf beyond n_grid.
     """
-    scores = np.full(grid.shape[:2], np.inf)
-    block = 32
-    blocks = -(-n_grid // block) * block
-    asked = (n_inner > 0) & (n_grid > 0)
-    for size in np.unique(blocks[asked]):
-        chosen = np.flatnonzero((blocks == size) & asked)
-        size = min(size, grid.shape[1])
-        for rows, n, _ in _groups(n_contour[chosen], np.zeros(len(chosen), int), size):
-            rows = chosen[rows]
-            (out,) = session("nn2_scores").run(
-                None,
-                {
-                    "contour": _single(contour, rows, n),
-                    "n_contour": n_contour[rows],
-                    "n_inner": n_inner[rows],
-                    "l_s": l_s[rows].astype(np.float32),
-                    "grid": grid[rows, :size].astype(np.float32),
-                },
-            )
-            scores[rows, :size] = out
-    scores[np.arange(grid.shape[1]) >= n_grid[:, None]] = np.inf
+    scores = np.full((len(grid), grid.shape[2]), np.inf, dtype=np.float32)
+    asked = np.flatnonzero((n_inner > 0) & (n_grid > 0))
+    for rows, n, m in _groups(n_contour[asked], n_grid[asked], _PADDED_GRID):
+        rows = asked[rows]
+        points = np.zeros((len(rows), 2, m), dtype=np.float32)
+        size = min(m, grid.shape[2])
+        points[..., :size] = grid[rows, :, :size]
+        (out,) = session("nn2_scores").run(
+            None,
+            {
+                "contour": _single(contour, rows, n),
+                "n_contour": n_contour[rows],
+                "n_inner": n_inner[rows],
+                "grid": points,
+            },
+        )
+        scores[rows, :size] = out[:, :size]
+    scores[np.arange(grid.shape[2]) >= n_grid[:, None]] = np.inf
     return scores
 
 
@@ -87,7 +81,7 @@ def move_inner_vertices(
     """NN2's further passes: better places for inner vertices (B, M, 2), all seen at once."""
     moved = inner.copy()
     chosen = np.flatnonzero(n_inner > 0)
-    for rows, n, m in _groups(n_contour[chosen], n_inner[chosen]):
+    for rows, n, m in _groups(n_contour[chosen], n_inner[chosen], _PADDED_INNER):
         rows = chosen[rows]
         (out,) = session("nn2_moves").run(
             None,
@@ -112,13 +106,13 @@ def rate_connections(
     """
     values = np.zeros((len(entries), 2))
     first = np.searchsorted(entries[:, 0], np.arange(len(n_contour) + 1))
-    for rows, n, m in _groups(n_contour, n_inner):
+    for rows, n, m in _groups(n_contour, n_inner, _PADDED_INNER):
         size = first[rows + 1] - first[rows]
         row = np.repeat(np.arange(len(rows)), size)
         chosen = (first[rows] - np.cumsum(size) + size)[row] + np.arange(len(row))
         if not len(chosen):
             continue
-        _, facet, vertex = entries[chosen].T
+        facet, vertex = entries.T[1:, chosen]
         n_own = n_contour[rows][row]
         column = np.where(vertex < n_own, vertex, vertex - n_own + n)
         (out,) = session("nn3").run(
@@ -128,25 +122,25 @@ def rate_connections(
                 "n_contour": n_contour[rows],
                 "inner": _single(inner, rows, m),
                 "n_inner": n_inner[rows],
-                "entries": np.stack([row, facet, column], axis=1),
+                "entries": np.stack([row, facet, column]),
             },
         )
         values[chosen] = out
     return values
 
 
-def _groups(n_contour: np.ndarray, n_inner: np.ndarray, per_edge: int = 0) -> Iterator[tuple[np.ndarray, int, int]]:
-    """Rows of like size, with the numbers of edges and of inner vertices to pad them to, a call at a time.
+def _groups(n_contour: np.ndarray, n_other: np.ndarray, sizes: np.ndarray) -> Iterator[tuple[np.ndarray, int, int]]:
+    """Rows of like size, with the numbers of edges and of other points to pad them to, a call at a time.
 
-    per_edge: pairs of tokens for each contour edge, where that is not the square of all vertices.
+    sizes: that the numbers of other points are padded to, ascending.
     """
     n_padded = _PADDED_EDGES[np.searchsorted(_PADDED_EDGES, n_contour)]
-    m_padded = _PADDED_INNER[np.searchsorted(_PADDED_INNER, n_inner)]
-    key = n_padded * 1000 + m_padded
+    m_padded = sizes[np.searchsorted(sizes, n_other)]
+    key = n_padded * 10000 + m_padded
     for value in np.unique(key):
         rows = np.flatnonzero(key == value)
-        n, m = int(value // 1000), int(value % 1000)
-        step = max(1, _CALL_SIZE // (n * per_edge if per_edge else (n + m) ** 2))
+        n, m = divmod(int(value), 10000)
+        step = max(1, _CALL_SIZE // (n + m))
         for start in range(0, len(rows), step):
             yield rows[start : start + step], n, m
 

@@ -14,6 +14,8 @@ from .transform import superimpose
 from .triangulation import triangulate
 
 LARGEST_CONTOUR = 16
+# Contours that are on their way at a time: a few kB each, times what a stage holds beside them.
+_PIECE = 1 << 13
 
 
 @dataclass(frozen=True)
@@ -34,17 +36,28 @@ def mesh_contours(
     """Mesh contours, each at its own target edge length.
 
     contours: (B, N, 2) float64, simple and counter-clockwise, n_contour (B,) vertices each, 3 to 16; edge_length: (B,);
-    flips: whether `flips.flip_edges` passes over the meshes in the end.
+    flips: whether `flips.flip_edges` passes over the meshes in the end. A large batch goes through in pieces, so that
+    memory grows by no more than the meshes.
     """
+    pieces = [
+        _mesh_piece(contours[rows], n_contour[rows], edge_length[rows], watch, flips)
+        for rows in (slice(first, first + _PIECE) for first in range(0, max(1, len(contours)), _PIECE))
+    ]
+    return pieces[0] if len(pieces) == 1 else _join(pieces)
+
+
+def _mesh_piece(
+    contours: np.ndarray, n_contour: np.ndarray, edge_length: np.ndarray, watch: Stopwatch, flips: bool
+) -> ContourMeshes:
+    """`mesh_contours` for all at a time."""
     with watch("transformation"):
         transformation = superimpose(contours, n_contour)
         transformed = transformation.apply(contours)
         l_s = edge_length * transformation.scale
     with watch("NN1"):
         wanted = networks.count_inner_vertices(transformed, n_contour, l_s)
-    with watch("NN2"):
-        places, n_inner = place_inner_vertices(transformed, n_contour, np.minimum(wanted, MOST_INNER), l_s)
-        inner = transformation.invert(places)
+    places, n_inner = place_inner_vertices(transformed, n_contour, np.minimum(wanted, MOST_INNER), watch)
+    inner = transformation.invert(places)
     with watch("triangulation"):
         points = join_vertices(contours, n_contour, inner, n_inner)
         meshes = triangulate(points, n_contour, n_inner, lambda *rest: connect(*rest, watch))
@@ -54,6 +67,20 @@ def mesh_contours(
             first = meshes.owner[:, None].astype(np.int64) * points.shape[1]
             triangles = (flip_edges(points.reshape(-1, 2), triangles + first) - first).astype(np.int32)
     return ContourMeshes(inner, n_inner, wanted, triangles, meshes.owner, meshes.fallbacks)
+
+
+def _join(pieces: list[ContourMeshes]) -> ContourMeshes:
+    """The meshes of several pieces of a batch, in their order."""
+    width = max(piece.inner.shape[1] for piece in pieces)
+    first = np.cumsum([0] + [len(piece.n_inner) for piece in pieces[:-1]])
+    return ContourMeshes(
+        np.concatenate([np.pad(p.inner, ((0, 0), (0, width - p.inner.shape[1]), (0, 0))) for p in pieces]),
+        np.concatenate([piece.n_inner for piece in pieces]),
+        np.concatenate([piece.wanted for piece in pieces]),
+        np.concatenate([piece.triangles for piece in pieces]),
+        np.concatenate([piece.owner + n for piece, n in zip(pieces, first.astype(np.int32), strict=True)]),
+        np.concatenate([piece.fallbacks for piece in pieces]),
+    )
 
 
 def connect(

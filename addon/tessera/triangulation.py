@@ -16,12 +16,12 @@ left is the same as going through the rows in the order of their best entries. B
   elements; the others of all contours are the next level's batch: one call of NN3 for all of them.
 
 Two departures from the listing, both found by measuring (1 200 contours with Gmsh's inner vertices, against CDT). The
-paper orders by q_worst, with q_mean only for ties; but very often an entry's q_worst is due to an element elsewhere,
-so that any error of the table decides between entries that should tie: with errors of 0.02 in a calculated table,
-ē_mean was 4.4 %. Ordering by the sum min(q_worst, q of the element itself) + q_mean + 0.05 q makes that 0.8 %, and
-with calculated tables -0.1 and 0.04 % (ē_worst, ē_mean). And a facet whose best entry has become impossible takes its
-next best one: leaving it to the recursion, if its entry falls below any share of its best one, changed nothing that
-could be measured.
+paper orders by q_worst, with q_mean only for ties; but very often an entry's q_worst is due to an element elsewhere, so
+that any error of the table decides between entries that should tie: with errors of 0.02 in a calculated table, ē_mean
+was 4.4 %. Ordering by the sum min(q_worst, q of the element itself) + q_mean makes that 0.5 %, and with calculated
+tables -0.1 and 0.02 % (ē_worst, ē_mean); near ties go to the better element. And a facet whose best entry has become
+impossible takes its next best one: leaving it to the recursion, if its entry falls below any share of its best one,
+changed nothing that could be measured.
 
 Why it always ends with a valid mesh, whatever the tables are:
 
@@ -59,8 +59,8 @@ from itertools import pairwise
 import numpy as np
 
 from .cavities import Boundaries, Contours, add_elements, join, open_contours, sub_contours
+from .entries import list_entries, score_entries
 from .visibility import (
-    as_bools,
     bits_of,
     crossing,
     edge_sides,
@@ -73,12 +73,6 @@ from .visibility import (
 
 Connect = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
-# Entries are compared to this many bits. What differs by less is a tie, so that rounding rarely decides.
-_BITS = 20
-# Weight of the element's own quality beside the table's entry.
-_OWN_WEIGHT = 0.05
-# Flatter elements, on vertices that are collinear but for rounding, are made only where there is no other.
-_FLAT = 1e-5
 # Where contours are divided by their number of vertices into groups of a level.
 _SIZES = (5, 7, 10, 14, 20)
 # So few contours join those of the next size, as calls cost more than padding.
@@ -201,21 +195,12 @@ def _ask(
             contour = number[group.owner[hopeless][0]]
             raise ValueError(f"contour {contour} is no simple counter-clockwise polygon with its inner vertices inside")
         possible.append(words)
-        entries.append(_entries(words, bits))
+        entries.append(list_entries(words, bits))
     together = np.concatenate(entries, axis=1)
     sizes = [part.shape[1] for part in entries]
     together[0] += np.repeat(np.cumsum([0] + [len(group.owner) for group in groups[:-1]]), sizes)
     values = connect(level.points, level.n_contour, level.n_inner, together.T)
     return list(zip(possible, entries, np.split(values, np.cumsum(sizes[:-1])), strict=True))
-
-
-def _entries(possible: np.ndarray, bits: np.ndarray) -> np.ndarray:
-    """Words (F, B) as rows, facets and vertices (3, p), sorted."""
-    width = bits.shape[1]
-    place = np.flatnonzero(as_bools(possible.T, bits[:, None]))
-    cell = place // width
-    row = cell // len(possible)
-    return np.array([row, cell - row * len(possible), place - cell * width])
 
 
 def _connect_facets(
@@ -232,7 +217,7 @@ def _connect_facets(
     and took the one element of best quality, and the cavities that are left.
     """
     n_contour = contours.n_contour
-    scores, stuck = _scores(contours.points, n_contour, entries, values)
+    scores, stuck = score_entries(contours.points, n_contour, entries, values)
     # The best entry of each facet, kept up to date.
     vertices = scores.argmax(axis=2)
     best = np.take_along_axis(scores, vertices[..., None], axis=2)[..., 0].T.copy()
@@ -267,38 +252,6 @@ def _connect_facets(
             best[:, np.isin(rows, stuck)] = 0
     row, *corners = np.concatenate(elements, axis=1)
     return np.stack(corners, axis=1), row, stuck, boundaries
-
-
-def _scores(
-    points: np.ndarray, n_contour: np.ndarray, entries: np.ndarray, values: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Possible entries as integers, the better the larger and above 0: (B, F, V) int32.
-
-    An entry is acceptable if its q_worst is finite and positive, and its element not flat; others are at most 0. Rows
-    without any are returned too (s,): there every possible entry counts by its own quality.
-    """
-    row, facet, vertex = entries
-    n_facets, width = int(n_contour.max()), points.shape[1]
-    flat, first = np.ascontiguousarray(points).view(np.complex128).reshape(-1), row * width
-    end = facet + 1
-    end[end == n_contour[row]] = 0
-    own = _quality(flat.take(first + facet), flat.take(first + end), flat.take(first + vertex))
-    worst, mean = np.where(np.isfinite(values), values, 0).T
-    acceptable = (worst > 0) & (own > _FLAT)
-    stuck = np.bincount(row, acceptable, len(points)) == 0
-    value = np.minimum(worst, own) + np.clip(mean, 0, 1) + _OWN_WEIGHT * own
-    value = np.where(stuck[row], own, np.where(acceptable, value, -1))
-    scores = np.zeros(len(points) * n_facets * width, dtype=np.int32)
-    scores[(row * n_facets + facet) * width + vertex] = (value * 2**_BITS).astype(np.int32) + 1
-    return scores.reshape(-1, n_facets, width), np.flatnonzero(stuck)
-
-
-def _quality(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
-    """`element_quality` of triangles with corners (P,), complex numbers, 0 where it is not positive: (P,) float64."""
-    ab, ac, bc = b - a, c - a, c - b
-    double_area = ac.real * bc.imag - bc.real * ac.imag
-    squared = sum(side.real**2 + side.imag**2 for side in (ac, bc, ab))
-    return 2 * np.sqrt(3) * np.maximum(double_area, 0) / np.maximum(squared, np.finfo(float).tiny)
 
 
 def _excluded(

@@ -8,8 +8,9 @@ one for ten; of a batch that fails, the one contour that is to blame is named.
 import numpy as np
 from hypothesis import strategies as st
 
+from tessera.entries import FLAT
 from tessera.quality import element_quality
-from tessera.triangulation import _FLAT, triangulate
+from tessera.triangulation import triangulate
 from tests.library.polygons import circle, comb, needle, placed, seeds, spiral, staircase, star
 from tests.validity import check_many, polygon_area, polygon_is_simple, signs_of_areas
 
@@ -168,5 +169,5 @@ def _check(batch: Members, table: str) -> None:
     if table in ("constant", "one", "huge", "own quality"):
         # Straight runs that are bent by rounding alone may leave nothing but flat elements.
         quality = element_quality(points.reshape(-1, 2), result.triangles + result.owner[:, None] * points.shape[1])
-        flat = np.isin(np.arange(len(batch)), result.owner[quality <= _FLAT])
+        flat = np.isin(np.arange(len(batch)), result.owner[quality <= FLAT])
         assert not result.fallbacks[~flat].any(), "a fallback where the table had an element"

@@ -5,6 +5,7 @@ import pytest
 
 from tessera import networks, placement
 from tessera.cavity import distances_to_contour, even_lengths, is_inside
+from tessera.stopwatch import Stopwatch
 
 THIN = np.array([[[0, 0], [4, 0], [4, 0.05], [0, 0.05]]]) - [2, 0.025]
 SQUARE = np.array([[[-1.0, -1], [1, -1], [1, 1], [-1, 1]]])
@@ -12,7 +13,7 @@ SQUARE = np.array([[[-1.0, -1], [1, -1], [1, 1], [-1, 1]]])
 
 def place(contour, count):
     n = np.array([contour.shape[1]])
-    return placement.place_inner_vertices(contour, n, np.array([count]), np.array([0.5]))
+    return placement.place_inner_vertices(contour, n, np.array([count]), Stopwatch())
 
 
 def assert_valid(contour, inner, count):

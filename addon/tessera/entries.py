@@ -1,0 +1,55 @@
+"""Entries of connection tables: listing those of possible elements, and the order in which they are taken."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .visibility import as_bools
+
+# Entries are compared to this many bits. What differs by less is a tie, so that rounding rarely decides.
+BITS = 20
+# Weight of the element's own quality beside the table's entry: it decides between near ties.
+OWN_WEIGHT = 0.005
+# Flatter elements, on vertices that are collinear but for rounding, are made only where there is no other.
+FLAT = 1e-5
+
+
+def list_entries(possible: np.ndarray, bits: np.ndarray) -> np.ndarray:
+    """Words (F, B) as rows, facets and vertices (3, p), sorted."""
+    width = bits.shape[1]
+    place = np.flatnonzero(as_bools(possible.T, bits[:, None]))
+    cell = place // width
+    row = cell // len(possible)
+    return np.array([row, cell - row * len(possible), place - cell * width])
+
+
+def score_entries(
+    points: np.ndarray, n_contour: np.ndarray, entries: np.ndarray, values: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Possible entries as integers, the better the larger and above 0: (B, F, V) int32.
+
+    An entry is acceptable if its q_worst is finite and positive, and its element not flat; others are at most 0. Rows
+    without any are returned too (s,): there every possible entry counts by its own quality.
+    """
+    row, facet, vertex = entries
+    n_facets, width = int(n_contour.max()), points.shape[1]
+    flat, first = np.ascontiguousarray(points).view(np.complex128).reshape(-1), row * width
+    end = facet + 1
+    end[end == n_contour[row]] = 0
+    own = _quality(flat.take(first + facet), flat.take(first + end), flat.take(first + vertex))
+    worst, mean = np.where(np.isfinite(values), values, 0).T
+    acceptable = (worst > 0) & (own > FLAT)
+    stuck = np.bincount(row, acceptable, len(points)) == 0
+    value = np.minimum(worst, own) + np.clip(mean, 0, 1) + OWN_WEIGHT * own
+    value = np.where(stuck[row], own, np.where(acceptable, value, -1))
+    scores = np.zeros(len(points) * n_facets * width, dtype=np.int32)
+    scores[(row * n_facets + facet) * width + vertex] = (value * 2**BITS).astype(np.int32) + 1
+    return scores.reshape(-1, n_facets, width), np.flatnonzero(stuck)
+
+
+def _quality(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """`element_quality` of triangles with corners (P,), complex numbers, 0 where it is not positive: (P,) float64."""
+    ab, ac, bc = b - a, c - a, c - b
+    double_area = ac.real * bc.imag - bc.real * ac.imag
+    squared = sum(side.real**2 + side.imag**2 for side in (ac, bc, ab))
+    return 2 * np.sqrt(3) * np.maximum(double_area, 0) / np.maximum(squared, np.finfo(float).tiny)

@@ -1,0 +1,102 @@
+"""The grid over each cavity that NN2 scores (paper, section 2.4), and which of its points may become inner vertices.
+
+Everything here is in grid units, the origin in the middle of a contour's bounding box, so that the grid itself is the
+same for all contours of a resolution. In single precision: these are candidates, what is placed is checked again.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .cavity import next_vertices
+
+# Numbers held at a time, so that the temporaries stay in the processor's cache.
+_BLOCK_SIZE = 1 << 16
+# Where padded vertices are put, in grid units.
+_FAR = 1e4
+
+
+@dataclass(frozen=True)
+class Grids:
+    """Grids of R² points over B contours, row by row from below, and which points are admissible."""
+
+    resolution: int
+    middle: np.ndarray  # (B, 2) float64, in the contours' plane
+    spacing: np.ndarray  # (B,) float64
+    admissible: np.ndarray  # (B, R²) bool
+
+    def places(self, points: np.ndarray) -> np.ndarray:
+        """Take points (B, 2, M) in grid units to the contours' plane."""
+        return self.middle[..., None] + points * self.spacing[:, None, None]
+
+
+def bounding_boxes(contour: np.ndarray, n_contour: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Lowest and highest coordinates (B, 2) of contours (B, N, 2)."""
+    real = (np.arange(contour.shape[1]) < n_contour[:, None])[..., None]
+    return np.where(real, contour, np.inf).min(axis=1), np.where(real, contour, -np.inf).max(axis=1)
+
+
+def steps(resolution: int) -> np.ndarray:
+    """Coordinates (R,) float32 of the grid's columns, and of its rows, in grid units."""
+    return (np.arange(resolution) - (resolution - 1) / 2).astype(np.float32)
+
+
+def make_grids(contour: np.ndarray, n_contour: np.ndarray, margin: np.ndarray, resolution: int) -> Grids:
+    """Square grids over the bounding boxes; points inside and farther than the margin from the contour are admissible.
+
+    contour: (B, N, 2) float64; margin: (B,), in the contour's plane.
+    """
+    low, high = bounding_boxes(contour, n_contour)
+    middle, spacing = (low + high) / 2, (high - low).max(axis=1) / resolution
+    start = (contour - middle[:, None]) / spacing[:, None, None]
+    edge = next_vertices(start, n_contour) - start
+    padding = np.arange(contour.shape[1]) >= n_contour[:, None]
+    start[padding], edge[padding] = _FAR, 0
+    start, edge = start.astype(np.float32), edge.astype(np.float32)
+    closest = (margin / spacing).astype(np.float32)[:, None] ** 2
+    admissible = np.empty((len(contour), resolution**2), dtype=bool)
+    step = max(1, _BLOCK_SIZE // (contour.shape[1] * resolution**2))
+    for first in range(0, len(contour), step):
+        rows = slice(first, first + step)
+        away = _squared_distances(start[rows], edge[rows], resolution)
+        np.logical_and(_is_inside(start[rows], edge[rows], resolution), away > closest[rows], out=admissible[rows])
+    return Grids(resolution, middle, spacing, admissible)
+
+
+def _squared_distances(start: np.ndarray, edge: np.ndarray, resolution: int) -> np.ndarray:
+    """(B, R²) squared distances of grid points to the closest of the edges (B, N, 2).
+
+    Element by element: a product of matrices may round differently from one size of batch to another.
+    """
+    y, x = (value.ravel() for value in np.meshgrid(steps(resolution), steps(resolution), indexing="ij"))
+    length = np.sqrt((edge * edge).sum(axis=-1, keepdims=True))
+    unit = edge / np.maximum(length, np.float32(1e-30))
+    away, rise = x - start[..., :1], y - start[..., 1:]
+    along = away * unit[..., :1]
+    along += rise * unit[..., 1:]
+    foot = np.minimum(np.maximum(along, np.float32(0)), length)
+    # |point - start|² + foot (foot - 2 along)
+    along *= np.float32(-2)
+    along += foot
+    along *= foot
+    away *= away
+    rise *= rise
+    away += rise
+    away += along
+    return away.min(axis=1)
+
+
+def _is_inside(start: np.ndarray, edge: np.ndarray, resolution: int) -> np.ndarray:
+    """(B, R²) whether grid points are inside, by the even-odd rule; a row of the grid is a word, a point a bit."""
+    upwards = steps(resolution) - start[..., 1:]  # (B, N, R)
+    straddles = (upwards < 0) != (upwards < edge[..., 1:])
+    slope = edge[..., :1] / np.where(edge[..., 1:] == 0, np.float32(1), edge[..., 1:])
+    crossing = start[..., :1] + upwards * slope
+    # Points of the row that are left of the crossing: the lowest bits.
+    left = np.clip(np.ceil(crossing + np.float32((resolution - 1) / 2)), 0, resolution).astype(np.uint64)
+    words = np.where(straddles, (np.uint64(1) << left) - np.uint64(1), np.uint64(0))
+    parity = np.bitwise_xor.reduce(words, axis=1)
+    bits = (parity[..., None] >> np.arange(resolution, dtype=np.uint64)) & np.uint64(1)
+    return bits.astype(bool).reshape(len(start), -1)
