@@ -63,9 +63,10 @@ def test_a_killed_run_goes_on_as_if_it_had_not_been(role, workplace, monkeypatch
 
 
 def test_training_lowers_the_loss(workplace, monkeypatch):
-    run(monkeypatch, "nn1", 60)
-    rows = np.loadtxt(workplace / "runs" / "nn1.csv", delimiter=",")
-    assert rows[-5:, 1].mean() < 0.7 * rows[:3, 1].mean()
+    """On held-out contours: single batches of the tiny training set are too different to compare."""
+    run(monkeypatch, "nn1", 300)
+    held_out = np.loadtxt(workplace / "runs" / "nn1.csv", delimiter=",")[:, 2]
+    assert held_out[-5:].mean() < 0.8 * held_out[0]
 
 
 def test_seeds_of_training_validation_and_test_differ():
