@@ -1,17 +1,20 @@
-"""The cavities that elements leave open: their boundaries, their splitting, and the sub-contours that they become.
+"""The cavities that elements leave open: their boundaries, and the sub-contours that they become.
 
-A contour's 2 F edge places hold the boundaries of all its cavities. Place 2 f holds facet f or, once f is connected to
-a vertex v, the edge from f's start to v; place 2 f + 1 then holds the edge from v to f's end. The cavity lies on their
-left. Going around a cavity is going through its places in cyclic order: connecting facet f puts its two new edges
-where f was, and if v already is on the cavity's boundary, the places after f and before v's become a cavity of their
-own. Sets of places are words, one bit for each.
+A contour's 2 F places hold the edges of all its cavities. Place 2 f holds facet f or, once f is connected to a vertex
+v, the edge from f's start to v; place 2 f + 1 then holds the edge from v to f's end. The cavity lies on their left, and
+going through the places in cyclic order is going around the cavities together. A vertex that is passed several times
+parts them: its edges do not cross, so that what lies between two passages is closed by itself. So an edge that arrives
+at a vertex for the (k + 1)-th time is followed by the one that left it for the k-th time, the first arrival by the last
+departure. That makes the groups of the listing, whatever the order in which the elements came.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from .visibility import as_bools, bits_of, edge_starts
+from .visibility import as_bools, edge_starts
+
+_NOWHERE = 1 << 40  # start of an empty place, behind all vertices
 
 
 @dataclass(frozen=True)
@@ -29,16 +32,6 @@ class Contours:
         n_contour, n_inner = self.n_contour[rows], self.n_inner[rows]
         width = int((n_contour + n_inner).max(initial=0))
         return Contours(self.points[rows, :width], self.slots[rows, :width], self.owner[rows], n_contour, n_inner)
-
-
-@dataclass(frozen=True)
-class Boundaries:
-    """State of a batch's cavities. Filled in place by `add_elements` while a level is triangulated."""
-
-    bits: np.ndarray  # (2 F,) words: the places
-    apex: np.ndarray  # (B, F) int64: the vertex that facet f is connected to, or else the end of f
-    from_vertex: np.ndarray  # (B, V) words: places whose edge starts, or started, from the vertex
-    cavity: np.ndarray  # (B, F + 1) words: the places of each cavity, by its number; 0 where nothing of it is left
 
 
 def join(parts: list[Contours]) -> Contours:
@@ -60,69 +53,36 @@ def join(parts: list[Contours]) -> Contours:
     )
 
 
-def open_contours(n_contour: np.ndarray, width: int) -> Boundaries:
-    """One cavity, of number 0, for every contour of `width` vertices with padding: the contour itself."""
-    starts = edge_starts(n_contour)
-    n_rows, n_facets = len(n_contour), starts.shape[1] - 1
-    bits = bits_of(2 * n_facets)
-    of_facets = bits[::2]
-    from_vertex = np.zeros((n_rows, width), dtype=of_facets.dtype)
-    from_vertex[:, :n_facets] = of_facets
-    cavity = np.zeros((n_rows, n_facets + 1), dtype=of_facets.dtype)
-    cavity[:, 0] = np.bitwise_or.accumulate(of_facets)[n_contour - 1]
-    return Boundaries(bits, starts[:, 1:].copy(), from_vertex, cavity)
-
-
-def add_elements(boundaries: Boundaries, row: np.ndarray, facet: np.ndarray, vertex: np.ndarray, number: int) -> None:
-    """Add element (facet, vertex) to each of the contours `row` (n,); a cavity that it splits off becomes `number`."""
-    bit = boundaries.bits[2 * facet]
-    own = (boundaries.cavity[row, :number] & bit[:, None] != 0).argmax(axis=1)
-    cavity = boundaries.cavity[row, own]
-    at = boundaries.from_vertex[row, vertex] & cavity
-    after = bit << 1
-    # The places after the facet's and before the vertex's, cyclic; none if the vertex is not on the boundary.
-    between = (at - 1) ^ (after - 1)
-    between = np.where(at < bit, ~between, between)
-    cavity |= after
-    part = np.where(at != 0, cavity & between, at)
-    left = np.array([cavity ^ part, part])
-    # Two edges there and back are an edge between two elements: nothing of the cavity is left.
-    without_lowest = left & (left - 1)
-    left *= without_lowest & (without_lowest - 1) != 0
-    boundaries.cavity[row, own], boundaries.cavity[row, number] = left
-    boundaries.from_vertex[row, vertex] |= after
-    boundaries.apex[row, facet] = vertex
-
-
 def sub_contours(
-    contours: Contours, boundaries: Boundaries, sides: np.ndarray, below: np.ndarray, bits: np.ndarray
+    contours: Contours, apex: np.ndarray, sides: np.ndarray, below: np.ndarray, bits: np.ndarray
 ) -> Contours:
-    """What is left of every contour: its cavities as contours, with the inner vertices that lie in them.
+    """What elements leave of every contour: its cavities as contours, with the inner vertices that lie in them.
 
-    sides: `edge_sides`; below: (B, V) words, the vertices not lower than each; bits: (B, V) words of the vertices.
+    apex: (B, F) int64, the vertex that each facet is connected to, -1 where there is none; sides: `edge_sides`; below:
+    (B, V) words, the vertices not lower than each; bits: (B, V) words of the vertices.
     """
-    parent, number = np.nonzero(boundaries.cavity)
-    cavity, place = np.nonzero(as_bools(boundaries.cavity[parent, number], boundaries.bits))
-    n_contour = np.bincount(cavity, minlength=len(parent))
-    first = np.cumsum(n_contour) - n_contour
-    row, facet, odd = parent[cavity], place >> 1, place & 1
-    apex = boundaries.apex[row, facet]
+    parent, row, place = _cavities(contours.n_contour, apex)
+    facet, odd = place >> 1, place & 1
+    apex = np.where(apex < 0, edge_starts(contours.n_contour)[:, 1:], apex)
+    first = np.searchsorted(row, np.arange(len(parent)))
+    n_contour = np.bincount(row, minlength=len(parent))
+    inside = _free_vertices(contours.n_contour, apex, bits)[parent]
+    at, apex = row, apex[parent[row], facet]
     vertex = np.where(odd, apex, facet)
-    inside = _free_vertices(contours.n_contour, boundaries, bits)[parent]
     (open_ones,) = np.nonzero(inside)
     if len(open_ones):
         # A cavity holds the vertices from which a ray along x passes its boundary's edges an odd number of times.
-        (edges,) = np.nonzero((inside != 0)[cavity])
-        row, start, apex = row[edges], (facet + odd)[edges], apex[edges]
-        left, right = sides[row, apex, start].T
-        start_below, apex_below = below[row, start % contours.n_contour[row]], below[row, apex]
+        (edges,) = np.nonzero((inside != 0)[at])
+        owner, start, apex = parent[at[edges]], (facet + odd)[edges], apex[edges]
+        left, right = sides[owner, apex, start].T
+        start_below, apex_below = below[owner, start % contours.n_contour[owner]], below[owner, apex]
         passed = (start_below & ~apex_below & left) | (~start_below & apex_below & right)
         size = n_contour[open_ones]
         inside[open_ones] &= np.bitwise_xor.reduceat(passed, np.cumsum(size) - size)
     inner_cavity, inner = np.nonzero(as_bools(inside, bits[parent]))
     n_inner = np.bincount(inner_cavity, minlength=len(parent))
     local = np.zeros((len(parent), int((n_contour + n_inner).max(initial=3))), dtype=np.int64)
-    local[cavity, np.arange(len(cavity)) - first[cavity]] = vertex
+    local[at, np.arange(len(at)) - first[at]] = vertex
     before = np.cumsum(n_inner) - n_inner - n_contour
     local[inner_cavity, np.arange(len(inner)) - before[inner_cavity]] = inner
     return Contours(
@@ -134,9 +94,51 @@ def sub_contours(
     )
 
 
-def _free_vertices(n_contour: np.ndarray, boundaries: Boundaries, bits: np.ndarray) -> np.ndarray:
-    """Inner vertices that no element uses yet: words (B,)."""
+def _cavities(n_contour: np.ndarray, apex: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Cavities: the contours (c,) that they are in, and of all their edges (e,) the cavity and the place, in order."""
+    (n_rows, n_facets), n_places = apex.shape, 2 * apex.shape[1]
+    facet = np.broadcast_to(np.arange(n_facets), apex.shape)
+    present = facet < n_contour[:, None]
+    active = np.stack([present, present & (apex >= 0)], axis=2).reshape(n_rows, -1)
+    start = np.where(active, np.stack([facet, apex], axis=2).reshape(n_rows, -1), _NOWHERE)
+    # Places count through all contours from here on; `first` is each contour's first.
+    index = np.arange(n_places)
+    first = n_places * np.arange(n_rows)[:, None]
+    order = first + np.argsort(start * n_places + index, axis=1)
+    departure = np.empty_like(order)
+    departure.put(order, order.take(first + _previous_alike(start.take(order))))
+    # After each place comes the next one in use; what follows it is the departure before that.
+    after = np.minimum.accumulate(np.where(active, index, n_places)[:, ::-1], axis=1)[:, -2::-1]
+    after = np.concatenate([after, np.full((n_rows, 1), n_places)], axis=1) % n_places
+    following = departure.take(first + after)
+    # Two edges there and back are an edge between two elements: nothing of the cavity is left.
+    active &= following.take(following) != first + index
+    # A cavity's number is its lowest place.
+    number = first + index
+    for _ in range(n_places.bit_length()):
+        number = np.minimum(number, number.take(following))
+        following = following.take(following)
+    place = np.flatnonzero(active)
+    number = number.take(place)
+    order = np.argsort(number, kind="stable")
+    number, place = number[order], place[order]
+    begins = np.diff(number, prepend=-1) != 0
+    return number[begins] // n_places, np.cumsum(begins) - 1, place % n_places
+
+
+def _previous_alike(values: np.ndarray) -> np.ndarray:
+    """For each of the ascending values (B, n), where the one before it of the same value is, cyclic: (B, n)."""
+    index = np.arange(values.shape[1])
+    changes = np.ones((len(values), values.shape[1] + 1), dtype=bool)
+    np.not_equal(values[:, 1:], values[:, :-1], out=changes[:, 1:-1])
+    last = np.where(changes[:, 1:], index, values.shape[1])
+    last = np.minimum.accumulate(last[:, ::-1], axis=1)[:, ::-1]
+    return np.where(changes[:, :-1], last, index - 1)
+
+
+def _free_vertices(n_contour: np.ndarray, apex: np.ndarray, bits: np.ndarray) -> np.ndarray:
+    """Inner vertices that no element uses yet: words (B,). apex: (B, F), of unconnected facets a contour vertex."""
     index = np.arange(bits.shape[1])
     free = bits * (index >= n_contour[:, None])
-    np.put_along_axis(free, boundaries.apex, free[:, :1], axis=1)
+    np.put_along_axis(free, apex, free[:, :1], axis=1)
     return np.bitwise_or.reduce(free, axis=1)

@@ -30,29 +30,26 @@ def even_lengths(contour: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray
 
 def is_inside(points: np.ndarray, contour: np.ndarray, n_contour: np.ndarray) -> np.ndarray:
     """(B, M) whether points (B, M, 2) are inside their contour, by the even-odd rule, in floating point."""
-    after = next_vertices(contour, n_contour)
-    inside = np.zeros(points.shape[:2], dtype=bool)
-    x, y = points[..., 0], points[..., 1]
-    for k in range(contour.shape[1]):
-        (ax, ay), (bx, by) = contour[:, k, :, None].swapaxes(0, 1), after[:, k, :, None].swapaxes(0, 1)
-        straddles = ((ay > y) != (by > y)) & (k < n_contour)[:, None]
-        side = (bx - ax) * (y - ay) - (by - ay) * (x - ax)
-        inside ^= straddles & ((side > 0) == (by > ay))
-    return inside
+    x, y, (ax, ay), (bx, by) = _points_and_edges(points, contour, n_contour)
+    straddles = ((ay > y) != (by > y)) & (np.arange(contour.shape[1]) < n_contour[:, None])[:, None]
+    side = (bx - ax) * (y - ay) - (by - ay) * (x - ax)
+    return np.bitwise_xor.reduce(straddles & ((side > 0) == (by > ay)), axis=-1)
 
 
 def distances_to_contour(points: np.ndarray, contour: np.ndarray, n_contour: np.ndarray) -> np.ndarray:
     """(B, M) distance of points (B, M, 2) to the closest edge of their contour."""
-    edges = next_vertices(contour, n_contour) - contour
-    x, y = points[..., 0], points[..., 1]
-    closest = np.full(points.shape[:2], np.inf)
-    for k in range(contour.shape[1]):
-        (ax, ay), (ex, ey) = contour[:, k, :, None].swapaxes(0, 1), edges[:, k, :, None].swapaxes(0, 1)
-        px, py = x - ax, y - ay
-        along = np.clip((px * ex + py * ey) / np.maximum(ex * ex + ey * ey, 1e-300), 0, 1)
-        px -= along * ex
-        py -= along * ey
-        square = px * px + py * py
-        square[k >= n_contour] = np.inf
-        np.minimum(closest, square, out=closest)
-    return np.sqrt(closest)
+    x, y, (ax, ay), (bx, by) = _points_and_edges(points, contour, n_contour)
+    ex, ey, px, py = bx - ax, by - ay, x - ax, y - ay
+    along = np.clip((px * ex + py * ey) / np.maximum(ex * ex + ey * ey, 1e-300), 0, 1)
+    px -= along * ex
+    py -= along * ey
+    square = px * px + py * py
+    square[np.broadcast_to((np.arange(contour.shape[1]) >= n_contour[:, None])[:, None], square.shape)] = np.inf
+    return np.sqrt(square.min(axis=-1))
+
+
+def _points_and_edges(points: np.ndarray, contour: np.ndarray, n_contour: np.ndarray) -> tuple[np.ndarray, ...]:
+    """x and y of points (B, M, 1), of edges' starts (2, B, 1, N) and of their ends."""
+    x, y = np.moveaxis(points, -1, 0)[..., None]
+    start, end = (np.moveaxis(ends, -1, 0)[:, :, None] for ends in (contour, next_vertices(contour, n_contour)))
+    return x, y, start, end

@@ -7,7 +7,7 @@ import numpy as np
 from .predicates import segments_cross
 
 # Below this many segments, testing all pairs is cheaper than dividing further.
-_LEAF = 12
+_LEAF = 24
 # Segments that keep being cut into pieces cannot be separated (a scribble): test all pairs instead.
 _MOST_PIECES = 16
 _BLOCK = 1_000_000

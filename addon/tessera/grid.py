@@ -50,27 +50,27 @@ def make_grids(contour: np.ndarray, n_contour: np.ndarray, margin: np.ndarray, r
     """
     low, high = bounding_boxes(contour, n_contour)
     middle, spacing = (low + high) / 2, (high - low).max(axis=1) / resolution
-    start = (contour - middle[:, None]) / spacing[:, None, None]
-    edge = next_vertices(start, n_contour) - start
+    start = ((contour - middle[:, None]) / spacing[:, None, None]).astype(np.float32)
+    end = next_vertices(start, n_contour)
     padding = np.arange(contour.shape[1]) >= n_contour[:, None]
-    start[padding], edge[padding] = _FAR, 0
-    start, edge = start.astype(np.float32), edge.astype(np.float32)
+    start[padding] = end[padding] = _FAR
     closest = (margin / spacing).astype(np.float32)[:, None] ** 2
     admissible = np.empty((len(contour), resolution**2), dtype=bool)
     step = max(1, _BLOCK_SIZE // (contour.shape[1] * resolution**2))
     for first in range(0, len(contour), step):
         rows = slice(first, first + step)
-        away = _squared_distances(start[rows], edge[rows], resolution)
-        np.logical_and(_is_inside(start[rows], edge[rows], resolution), away > closest[rows], out=admissible[rows])
+        away = _squared_distances(start[rows], end[rows], resolution)
+        np.logical_and(_is_inside(start[rows], end[rows], resolution), away > closest[rows], out=admissible[rows])
     return Grids(resolution, middle, spacing, admissible)
 
 
-def _squared_distances(start: np.ndarray, edge: np.ndarray, resolution: int) -> np.ndarray:
-    """(B, R²) squared distances of grid points to the closest of the edges (B, N, 2).
+def _squared_distances(start: np.ndarray, end: np.ndarray, resolution: int) -> np.ndarray:
+    """(B, R²) squared distances of grid points to the closest of the edges from start to end (B, N, 2).
 
     Element by element: a product of matrices may round differently from one size of batch to another.
     """
     y, x = (value.ravel() for value in np.meshgrid(steps(resolution), steps(resolution), indexing="ij"))
+    edge = end - start
     length = np.sqrt((edge * edge).sum(axis=-1, keepdims=True))
     unit = edge / np.maximum(length, np.float32(1e-30))
     away, rise = x - start[..., :1], y - start[..., 1:]
@@ -88,12 +88,13 @@ def _squared_distances(start: np.ndarray, edge: np.ndarray, resolution: int) -> 
     return away.min(axis=1)
 
 
-def _is_inside(start: np.ndarray, edge: np.ndarray, resolution: int) -> np.ndarray:
+def _is_inside(start: np.ndarray, end: np.ndarray, resolution: int) -> np.ndarray:
     """(B, R²) whether grid points are inside, by the even-odd rule; a row of the grid is a word, a point a bit."""
-    upwards = steps(resolution) - start[..., 1:]  # (B, N, R)
-    straddles = (upwards < 0) != (upwards < edge[..., 1:])
-    slope = edge[..., :1] / np.where(edge[..., 1:] == 0, np.float32(1), edge[..., 1:])
-    crossing = start[..., :1] + upwards * slope
+    rows, (x, y) = steps(resolution), np.moveaxis(start, -1, 0)[..., None]
+    # Both edges at a vertex compare the same number, so that a row through it passes one of them or both or none.
+    straddles = (rows < y) != (rows < end[..., 1:])  # (B, N, R)
+    across, up = end[..., :1] - x, end[..., 1:] - y
+    crossing = x + (rows - y) * (across / np.where(up == 0, np.float32(1), up))
     # Points of the row that are left of the crossing: the lowest bits.
     left = np.clip(np.ceil(crossing + np.float32((resolution - 1) / 2)), 0, resolution).astype(np.uint64)
     words = np.where(straddles, (np.uint64(1) << left) - np.uint64(1), np.uint64(0))

@@ -137,9 +137,9 @@ def _groups(n_contour: np.ndarray, n_other: np.ndarray, sizes: np.ndarray) -> It
     n_padded = _PADDED_EDGES[np.searchsorted(_PADDED_EDGES, n_contour)]
     m_padded = sizes[np.searchsorted(sizes, n_other)]
     key = n_padded * 10000 + m_padded
-    for value in np.unique(key):
+    for value in sorted(set(key.tolist())):
         rows = np.flatnonzero(key == value)
-        n, m = divmod(int(value), 10000)
+        n, m = divmod(value, 10000)
         step = max(1, _CALL_SIZE // (n + m))
         for start in range(0, len(rows), step):
             yield rows[start : start + step], n, m

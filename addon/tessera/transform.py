@@ -56,7 +56,7 @@ def superimpose(contours: np.ndarray, n_contour: np.ndarray) -> Transformation:
     centre = np.zeros(len(contours), dtype=np.complex128)
     factor = np.ones(len(contours), dtype=np.complex128)
     first = np.zeros(len(contours), dtype=np.int64)
-    for n in np.unique(n_contour):
+    for n in sorted(set(n_contour.tolist())):
         rows = n_contour == n
         centre[rows], factor[rows], first[rows] = _superimpose(_as_complex(contours[rows, :n]))
     return Transformation(centre, factor, first)

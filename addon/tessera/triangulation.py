@@ -7,8 +7,8 @@ left is the same as going through the rows in the order of their best entries. B
 - Lines 9-16 (connect, validate): an entry is possible if its triangle is counter-clockwise, holds no other vertex of
   the contour, on its sides neither, and its new edges cross no facet (`visibility.possible_elements`). After each new
   element the entries that overlap it are closed, so that the best entry left needs no validation (`_excluded`).
-- Group ids (lines 10-12, 18-21): `cavities.Boundaries.cavity` has the edges of each group; a vertex may be in several
-  groups. An entry whose facet and vertex are in different groups overlaps an element.
+- Group ids (lines 10-12, 18-21): found in the end, from where each facet's element goes (`cavities.py`); until then
+  no decision needs them, as an entry whose facet and vertex are in different groups overlaps an element.
 - V_locked, F_locked (lines 13-15, 22-26): a vertex is locked when no edge of any cavity starts from it, a facet when it
   is a side of an element. Their entries overlap an element too, so that there is no list of them: all three are in
   the words of entries that are still possible (`possible` in `_connect_facets`).
@@ -58,7 +58,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from .cavities import Boundaries, Contours, add_elements, join, open_contours, sub_contours
+from .cavities import Contours, join, sub_contours
 from .entries import list_entries, score_entries
 from .visibility import (
     bits_of,
@@ -138,8 +138,8 @@ def _triangulate(
         tables = _ask(level, groups, views, number, connect)
         rest = []
         for group, view, table in zip(groups, views, tables, strict=True):
-            triangles, row, stuck, boundaries = _connect_facets(group, *view, *table)
-            left = sub_contours(group, boundaries, view[0], below[group.owner[:, None], group.slots], view[1])
+            triangles, row, stuck, apex = _connect_facets(group, *view, *table)
+            left = sub_contours(group, apex, view[0], below[group.owner[:, None], group.slots], view[1])
             single = (left.n_contour == 3) & (left.n_inner == 0)
             elements += [np.take_along_axis(group.slots[row], triangles, axis=1), left.slots[single, :3]]
             owners += [group.owner[row], left.owner[single]]
@@ -210,11 +210,11 @@ def _connect_facets(
     possible: np.ndarray,
     entries: np.ndarray,
     values: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, Boundaries]:
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Connect the facets of each contour, best entry first, as long as an entry is left.
 
     Returns the elements (t, 3) and their rows (t,), the rows (s,) that had no acceptable entry
-    and took the one element of best quality, and the cavities that are left.
+    and took the one element of best quality, and the vertex that each facet is connected to (B, F), -1 where none.
     """
     n_contour = contours.n_contour
     scores, stuck = score_entries(contours.points, n_contour, entries, values)
@@ -224,20 +224,18 @@ def _connect_facets(
     chosen = np.take_along_axis(bits, vertices, axis=1).T.copy()
     vertices = vertices.T.copy()
     rows = np.arange(len(scores))
-    boundaries = open_contours(n_contour, sides.shape[1])
     elements = []
     for number in range(1, len(best) + 1):
-        facet = best.argmax(axis=0)
-        going = best.max(axis=0) > 0
+        facet, index = best.argmax(axis=0), np.arange(len(rows))
+        going = best[facet, index] > 0
         if not going.all():
-            rows, facet = rows[going], facet[going]
+            rows, facet, index = rows[going], facet[going], index[: np.count_nonzero(going)]
             best, vertices, chosen, possible = (part[:, going] for part in (best, vertices, chosen, possible))
         if not len(rows):
             break
-        index, n = np.arange(len(rows)), n_contour[rows]
+        n = n_contour[rows]
         vertex, end = vertices[facet, index], (facet + 1) % n
         elements.append([rows, facet, end, vertex])
-        add_elements(boundaries, rows, facet, vertex, number)
         possible = possible & ~_excluded(sides, bits, rows, facet, end, vertex, n)
         possible[facet, index] = 0
         best = best * (possible != 0)
@@ -251,7 +249,9 @@ def _connect_facets(
         if number == 1 and len(stuck):
             best[:, np.isin(rows, stuck)] = 0
     row, *corners = np.concatenate(elements, axis=1)
-    return np.stack(corners, axis=1), row, stuck, boundaries
+    apex = np.full((len(scores), len(best)), -1)
+    apex[row, corners[0]] = corners[2]
+    return np.stack(corners, axis=1), row, stuck, apex
 
 
 def _excluded(

@@ -1,12 +1,12 @@
 """The grid that NN2 scores: the candidates are those that a plain test in double precision finds."""
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from tessera.cavity import distances_to_contour, even_lengths, is_inside
 from tessera.grid import make_grids, steps
-from tests.library.polygons import placed, placements, simple_polygons
+from tests.library.polygons import placed, placements, simple_polygons, star
 
 
 def whole_grid(grids):
@@ -17,6 +17,7 @@ def whole_grid(grids):
 
 @settings(max_examples=30, deadline=None)
 @given(simple_polygons, placements, st.sampled_from([6, 12, 20, 48]))
+@example(star(12, 0.9), (1.0, 0.0, 0.0), 6)  # rows of the grid run through vertices
 def test_admissible_points_are_inside_and_clear_of_the_contour(polygon, placement, resolution):
     contour = placed(polygon, placement)[None]
     n = np.array([contour.shape[1]])
