@@ -63,9 +63,13 @@ def draw_scores(ax: Axes, contour: np.ndarray) -> None:
     count = networks.count_inner_vertices(transformed, n_contour, l_s)
     places, _ = place_inner_vertices(transformed, n_contour, count, Stopwatch())
     low, high = transformed[0].min(axis=0), transformed[0].max(axis=0)
-    x, y = np.meshgrid(np.linspace(low[0], high[0], 48), np.linspace(low[1], high[1], 48))
+    x, y = np.meshgrid(np.linspace(low[0], high[0], 120), np.linspace(low[1], high[1], 120))
     grid = np.stack([x.ravel(), y.ravel()])[None]
-    scores = networks.score_grid(transformed, n_contour, count, grid, np.array([grid.shape[2]]))
+    parts = [
+        networks.score_grid(transformed, n_contour, count, part, np.array([part.shape[2]]))
+        for part in np.array_split(grid, 10, axis=2)
+    ]
+    scores = np.concatenate(parts, axis=1)
     inside = is_inside(np.swapaxes(grid, 1, 2), transformed, n_contour)
     ax.contourf(x, y, np.where(inside, scores, np.nan).reshape(x.shape), levels=18, cmap="YlGnBu_r")
     ax.plot(*np.vstack([transformed[0], transformed[0, :1]]).T, "-o", color=LINE, ms=3, lw=1)

@@ -23,12 +23,13 @@ def is_real(count: Tensor, size: int) -> Tensor:
 
 def neighbours(values: Tensor, count: Tensor) -> tuple[Tensor, Tensor]:
     """Values (B, N, W) of the next and of the previous contour vertex; of some real one in padding."""
-    index = torch.arange(values.shape[1], device=values.device).unsqueeze(0)
-    last = count.unsqueeze(1) - 1
-    after = torch.where(index < last, index + 1, torch.zeros_like(index)).unsqueeze(-1)
-    before = torch.where(index > 0, index - 1, last).unsqueeze(-1)
-    shape = (-1, -1, values.shape[2])
-    return torch.gather(values, 1, after.expand(shape)), torch.gather(values, 1, before.expand(shape))
+    (batch, size), device = values.shape[:2], values.device
+    index, last = torch.arange(size, device=device).unsqueeze(0), count.unsqueeze(1) - 1
+    first = (torch.arange(batch, device=device) * size).unsqueeze(1)
+    after = torch.where(index < last, index + 1, torch.zeros_like(index))
+    before = torch.where(index > 0, index - 1, last)
+    flat = values.flatten(0, 1)
+    return flat[first + after], flat[first + before]
 
 
 def area(contour: Tensor, n_contour: Tensor) -> Tensor:

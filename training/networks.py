@@ -151,11 +151,12 @@ def element_features(shape: Outline, at: Tensor, facet: Tensor, apex: Tensor, ve
     twice = ahead_x * uy - ahead_y * ux
     quality = 2 * 3**0.5 * twice / (a + b + c + 1e-9)
     cotangent = ((ux * wx + uy * wy) / twice.clamp(min=1e-4)).clamp(-20, 20)
-    table = torch.full((shape.contour.shape[0] * shape.contour.shape[1], at.shape[1]), 30.0, device=at.device)
-    sharper = (cotangent - table.index_put((facet, vertex), cotangent).amin(-1)[facet]).clamp(max=4)
-    worse = quality + table.index_put((facet, vertex), -quality).amin(-1)[facet]
-    sides = [torch.sqrt(side + 1e-9).clamp(max=5) for side in (a, b, c)]
-    return torch.stack([quality, quality * quality, *sides, cotangent.clamp(-4, 4), sharper, worse], -1)
+    own = torch.stack([cotangent, -quality], -1)
+    table = torch.full((shape.contour.shape[0] * shape.contour.shape[1], at.shape[1], 2), 30.0, device=at.device)
+    beside = own - table.index_put((facet, vertex), own).amin(1)[facet]
+    sides = torch.sqrt(torch.stack([a, b, c], -1) + 1e-9)
+    shapes = torch.stack([quality, quality * quality], -1)
+    return torch.cat([shapes, torch.cat([sides, own[:, :1], beside], -1).clamp(-4, 5)], -1)
 
 
 ROLES = {"nn1": NN1, "nn2_scores": Scores, "nn2_moves": Moves, "nn3": NN3}

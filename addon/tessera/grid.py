@@ -13,7 +13,7 @@ import numpy as np
 from .cavity import next_vertices
 
 # Numbers held at a time, so that the temporaries stay in the processor's cache.
-_BLOCK_SIZE = 1 << 16
+_BLOCK_SIZE = 1 << 17
 # Where padded vertices are put, in grid units.
 _FAR = 1e4
 
