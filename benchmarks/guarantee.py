@@ -14,19 +14,16 @@ from tqdm import tqdm
 
 from tests.library.adversaries import Members, batches, check_guarantee, tables
 
-# Batches in one run of hypothesis, which remembers all that it has drawn.
-ROUND = 100
+# Batches in one run of hypothesis, which remembers all that it has drawn; and the fewest examples in one.
+ROUND, FEWEST = 100, 30
 
 
 def main() -> None:
     """Draw and check, with a progress bar."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--examples", type=int, default=100_000)
-    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--examples", type=int, default=100_000, help="at least so many (default: %(default)s)")
+    parser.add_argument("--seed", type=int, default=0, help="of the examples (default: %(default)s)")
     arguments = parser.parse_args()
-    settings = hypothesis.settings(
-        max_examples=ROUND, database=None, deadline=None, suppress_health_check=list(hypothesis.HealthCheck)
-    )
     done, number = 0, arguments.seed
     with tqdm(total=arguments.examples, unit="example") as progress:
         while done < arguments.examples:
@@ -35,6 +32,12 @@ def main() -> None:
                 check_guarantee(batch, table)
                 progress.update(len(batch))
 
+            settings = hypothesis.settings(
+                max_examples=min(ROUND, -(-(arguments.examples - done) // FEWEST)),
+                database=None,
+                deadline=None,
+                suppress_health_check=list(hypothesis.HealthCheck),
+            )
             hypothesis.seed(number)(settings(hypothesis.given(batches, tables)(check)))()
             done, number = progress.n, number + 1
     print(f"{done} examples: all meshes valid")

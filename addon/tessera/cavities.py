@@ -2,10 +2,14 @@
 
 A contour's 2 F places hold the edges of all its cavities. Place 2 f holds facet f or, once f is connected to a vertex
 v, the edge from f's start to v; place 2 f + 1 then holds the edge from v to f's end. The cavity lies on their left, and
-going through the places in cyclic order is going around the cavities together. A vertex that is passed several times
-parts them: its edges do not cross, so that what lies between two passages is closed by itself. So an edge that arrives
-at a vertex for the (k + 1)-th time is followed by the one that left it for the k-th time, the first arrival by the last
-departure. That makes the groups of the listing, whatever the order in which the elements came.
+going through the places in cyclic order is a walk around all cavities together.
+
+The walk may pass a vertex several times: a passage is an arrival and the departure after it. Around the vertex the
+passages lie counter-clockwise in the order of the walk, as facets do and edges do not cross, and between two of them in
+turn lies a cavity. So what arrives in one passage is followed by what left in the passage before, cyclically; that
+makes the groups of the listing, whatever the order in which the elements came. The passages of two vertices never take
+turns (x, y, x, y), because the elements at one of them part the walk between those of the other. So a cavity is one
+stretch of the walk with whole stretches left out, and its places in ascending order are its edges in order.
 """
 
 from dataclasses import dataclass
@@ -111,7 +115,7 @@ def _cavities(n_contour: np.ndarray, apex: np.ndarray) -> tuple[np.ndarray, np.n
     after = np.minimum.accumulate(np.where(active, index, n_places)[:, ::-1], axis=1)[:, -2::-1]
     after = np.concatenate([after, np.full((n_rows, 1), n_places)], axis=1) % n_places
     following = departure.take(first + after)
-    # Two edges there and back are an edge between two elements: nothing of the cavity is left.
+    # Two edges there and back are one edge with an element on either side: nothing of the cavity is left.
     active &= following.take(following) != first + index
     # A cavity's number is its lowest place.
     number = first + index

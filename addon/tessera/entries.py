@@ -29,19 +29,24 @@ def score_entries(
     """Possible entries as integers, the better the larger and above 0: (B, F, V) int32.
 
     An entry is acceptable if its q_worst is finite and positive, and its element not flat; others are at most 0. Rows
-    without any are returned too (s,): there every possible entry counts by its own quality.
+    without any are returned too (s,): there each facet's bluntest apexes count, by the element's own quality.
     """
     row, facet, vertex = entries
     n_facets, width = int(n_contour.max()), points.shape[1]
     flat, first = np.ascontiguousarray(points).view(np.complex128).reshape(-1), row * width
     end = facet + 1
     end[end == n_contour[row]] = 0
-    own = _quality(flat.take(first + facet), flat.take(first + end), flat.take(first + vertex))
+    corners = flat.take(first + facet), flat.take(first + end), flat.take(first + vertex)
+    own = _quality(*corners)
     worst, mean = np.where(np.isfinite(values), values, 0).T
     acceptable = (worst > 0) & (own > FLAT)
     stuck = np.bincount(row, acceptable, len(points)) == 0
     value = np.minimum(worst, own) + np.clip(mean, 0, 1) + OWN_WEIGHT * own
-    value = np.where(stuck[row], own, np.where(acceptable, value, -1))
+    value = np.where(acceptable, value, -1)
+    (left,) = np.nonzero(stuck[row])
+    if len(left):
+        blunt = _is_bluntest(*(corner[left] for corner in corners), row[left] * n_facets + facet[left])
+        value[left] = np.where(blunt, own[left], -1)
     scores = np.zeros(len(points) * n_facets * width, dtype=np.int32)
     scores[(row * n_facets + facet) * width + vertex] = (value * 2**BITS).astype(np.int32) + 1
     return scores.reshape(-1, n_facets, width), np.flatnonzero(stuck)
@@ -53,3 +58,15 @@ def _quality(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
     double_area = ac.real * bc.imag - bc.real * ac.imag
     squared = sum(side.real**2 + side.imag**2 for side in (ac, bc, ab))
     return 2 * np.sqrt(3) * np.maximum(double_area, 0) / np.maximum(squared, np.finfo(float).tiny)
+
+
+def _is_bluntest(a: np.ndarray, b: np.ndarray, c: np.ndarray, facet: np.ndarray) -> np.ndarray:
+    """(P,) whether an entry's apex angle is its facet's largest: the element of the constrained Delaunay triangulation.
+
+    a, b, c: (P,) corners, the apex last, complex numbers; facet: (P,) int, ascending.
+    """
+    product = (a - c) * np.conj(b - c)
+    cotangent = product.real / np.maximum(np.abs(product.imag), np.finfo(float).tiny)
+    first = np.flatnonzero(np.diff(facet, prepend=-1))
+    smallest = np.repeat(np.minimum.reduceat(cotangent, first), np.diff(first, append=len(facet)))
+    return cotangent <= smallest

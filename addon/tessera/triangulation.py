@@ -1,52 +1,61 @@
 """The triangulation algorithm (section 2.5.1, Algorithm 3): connection tables lead from contours to meshes, in batches.
 
 All contours of a batch advance together: in one step, each connects the facet of its best entry with that entry's
-vertex, and closes the entries that this makes impossible. The rows are not sorted beforehand: taking the best entry
-left is the same as going through the rows in the order of their best entries. Beside the paper's listing:
+vertex, and closes the entries that this makes impossible. Beside the paper's listing:
 
-- Lines 9-16 (connect, validate): an entry is possible if its triangle is counter-clockwise, holds no other vertex of
-  the contour, on its sides neither, and its new edges cross no facet (`visibility.possible_elements`). After each new
-  element the entries that overlap it are closed, so that the best entry left needs no validation (`_excluded`).
-- Group ids (lines 10-12, 18-21): found in the end, from where each facet's element goes (`cavities.py`); until then
-  no decision needs them, as an entry whose facet and vertex are in different groups overlaps an element.
-- V_locked, F_locked (lines 13-15, 22-26): a vertex is locked when no edge of any cavity starts from it, a facet when it
+- Line 7 (order of rows and columns): the best entry of each facet is kept, and the best of them is taken
+  (`_connect_facets`, `entries.score_entries`).
+- Line 9 (validate): an entry is possible if its triangle is counter-clockwise, holds no other vertex of the contour, on
+  its sides neither, and its new edges cross no facet (`visibility.possible_elements`). After each new element the
+  entries that overlap it are closed, so that the best entry left needs no validation (`_excluded`). A facet whose best
+  entry is closed takes its next best one (lines 11 and 14).
+- Lines 10-12, 18-21 (group ids): found in the end, from where each facet's element goes (`cavities._cavities`); until
+  then no decision needs them, as an entry whose facet and vertex are in different groups overlaps an element.
+- Lines 13-15, 22-26 (V_locked, F_locked): a vertex is locked when no edge of any cavity starts from it, a facet when it
   is a side of an element. Their entries overlap an element too, so that there is no list of them: all three are in
   the words of entries that are still possible (`possible` in `_connect_facets`).
-- Lines 28-34 (sub-contours, recursion): `cavities.sub_contours`. Those of three edges without inner vertices are
-  elements; the others of all contours are the next level's batch: one call of NN3 for all of them.
+- Lines 28-30 (sub-contours): `cavities.sub_contours`; those of three edges without inner vertices are elements
+  (`single` in `_triangulate`).
+- Lines 31-34 (recursion): the others of all contours are the next level's batch: one call of NN3 for all (`_ask`).
 
-Two departures from the listing, both found by measuring (1 200 contours with Gmsh's inner vertices, against CDT). The
-paper orders by q_worst, with q_mean only for ties; but very often an entry's q_worst is due to an element elsewhere, so
-that any error of the table decides between entries that should tie: with errors of 0.02 in a calculated table, ē_mean
-was 4.4 %. Ordering by the sum min(q_worst, q of the element itself) + q_mean makes that 0.5 %, and with calculated
-tables -0.1 and 0.02 % (ē_worst, ē_mean); near ties go to the better element. And a facet whose best entry has become
-impossible takes its next best one: leaving it to the recursion, if its entry falls below any share of its best one,
-changed nothing that could be measured.
+Departures from the listing:
+
+- It orders by q_worst, with q_mean for ties. But very often an entry's q_worst is due to an element elsewhere, so that
+  any error of the table decides between entries that should tie. Here the order is that of the sum min(q_worst, q of
+  the element itself) + q_mean. Calculated tables on 1 200 contours with Gmsh's inner vertices, against CDT: ē_worst and
+  ē_mean are -0.1 and 0.0 % either way, but with normal errors of 0.02 in the tables 0.2 and 2.2 % by the paper's order,
+  0.1 and 0.5 % by the sum. Near ties go to the better element; flat elements come last.
+- It tries all vertices of a row before the next row. Here a facet whose best entry is closed waits until its next best
+  one is the best left.
 
 Why it always ends with a valid mesh, whatever the tables are:
 
-1. Every decision is an exact sign. Two possible elements of one contour overlap only if two of their edges cross
-   properly or they lie on the same side of a common edge. For neither triangle holds a vertex of the other in its
-   closure, apart from common ones: without proper crossing, edges could only meet in a vertex, or along each other
-   with an end of one on the other. So one triangle would lie in the other, or a corner they share would have an edge
-   of one enter the other, which it could leave only across the opposite side. These two cases are what `_excluded`
-   closes. New edges start from contour vertices, as the third edge of every entry is a facet. If the common edge is a
-   facet, new edges cross, as neither triangle holds the other's third vertex; or it is the same triangle, which has
-   new edges in common too.
+1. Every decision is an exact sign. A possible element lies in its contour: beside its facet it does, and a facet that
+   entered it would have an end in it that is no corner, cross a new edge, or start from a corner and leave across the
+   opposite side, which is a new edge, or a facet that it would cross. Two possible elements overlap only if two of
+   their edges cross properly or they lie on the same side of a common edge. For neither triangle holds a vertex of the
+   other in its closure, apart from common ones: without proper crossing, edges could only meet in a vertex, or along
+   each other with an end of one on the other. So one triangle would lie in the other, or a corner they share would have
+   an edge of one enter the other, which it could leave only across the opposite side. These two cases are what
+   `_excluded` closes. New edges start from contour vertices, as the third edge of every entry is a facet. If the common
+   edge is a facet, new edges cross, as neither triangle holds the other's third vertex; or it is the same triangle,
+   which has new edges in common too. So an entry that is left lies in one cavity, as its facet does.
 2. What is left beside the elements is a set of simple polygons with the remaining vertices strictly inside, by
    induction. An element on facet (a, b) of such a polygon with apex v inside it leaves one: a, v, b replaces a, b, and
    v was not on it. With v on its boundary, it leaves the part from b to v and that from v to a. Each vertex but v is
-   in one of them, each part visits it once, and a part of two edges is empty: its edge is common to two elements. No
-   vertex lies on a new edge, as elements hold no other vertex.
+   in one of them, each part visits it once, and a part of two edges is empty: they are one edge, common to two
+   elements, or a facet and the side of the element that locks it. No vertex lies on a new edge, as elements hold no
+   other vertex.
 3. In a simple polygon with vertices strictly inside, every facet has a possible element. A simple polygon of more than
    three vertices has a diagonal, also with straight angles: with a convex vertex v and its neighbours u and w, either
-   uw or the segment from v to the vertex in triangle u, v, w farthest from uw. By induction it has a triangulation
-   with elements of positive area, into which inner vertices can be put one after the other, splitting one element, or
-   two if they lie on an edge. Its element on the facet is possible.
+   uw or the segment from v to the vertex in the closed triangle u, v, w farthest from uw. By induction it has a
+   triangulation with elements of positive area, into which inner vertices can be put one after the other, splitting one
+   element, or two if they lie on an edge. Its element on the facet is possible.
 4. So every sub-contour always gets at least one element: if the table has no acceptable entry (finite, q_worst above
-   0, the element not flat) for any possible element, the one of best quality (ties by index), counted as a fallback. A
-   full triangulation has exactly N_C + 2 N_I - 2 elements and those left to make go down with each one, so the
-   recursion ends; elements that do not overlap and reach this number cover the contour once and use every vertex.
+   0, the element not flat) for any possible element, the best one that a constrained Delaunay triangulation would have
+   on a facet (ties by index), counted as a fallback. A full triangulation has exactly N_C + 2 N_I - 2 elements and
+   those left to make go down with each one, so the recursion ends; elements that do not overlap, lie in the contour and
+   reach this number cover it once and use every vertex.
 
 Contours of a batch share nothing but array operations that treat each alone, and triangles are sorted in the end, so a
 mesh does not depend on the batch that its contour is in.
@@ -97,8 +106,10 @@ def triangulate(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, 
     vertices strictly inside, then padding of any value; n_contour, n_inner: (B,) int. connect: NN3, a function of
     points, n_contour and n_inner of contours in the same form, and of the entries that are possible elements (P, 3)
     int64, sorted (contour, facet, vertex) -> (P, 2) float64, their (q_worst, q_mean). It is asked once for all contours
-    of a level of the recursion, whose edges can be as many as a contour has vertices. Raises ValueError where no
-    element is possible, which is so only if a contour is not as described; other such contours may go unnoticed.
+    of a level of the recursion, whose edges can be as many as a contour has vertices; contours of up to 32, up to 64
+    and more vertices, and parts of a large batch, go separately. Coordinates are within 1e±100, as `contour.py` sees
+    to. Raises ValueError where no element is possible, which is so only if a contour is not as described; other such
+    contours may go unnoticed.
     """
     n_rows, width = points.shape[:2]
     n_contour, n_inner = np.asarray(n_contour, dtype=np.int64), np.asarray(n_inner, dtype=np.int64)

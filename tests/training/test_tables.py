@@ -31,6 +31,26 @@ def delaunay_quality(vertices: np.ndarray, n_contour: int) -> tuple[float, float
     return meshing.qualities(vertices, opposite, len(vertices))
 
 
+def errors_against_cdt(points, n_contour, n_inner, result) -> np.ndarray:
+    """(B, 2) ē_worst and ē_mean of each contour."""
+    flat = result.triangles + result.owner[:, None] * points.shape[1]
+    quality = element_quality(points.reshape(-1, 2), flat)
+    worst = np.ones(len(points))
+    np.minimum.at(worst, result.owner, quality)
+    ours = np.column_stack([worst, np.bincount(result.owner, quality) / np.bincount(result.owner)])
+    cdt = np.array([delaunay_quality(row[: n + m], n) for row, n, m in zip(points, n_contour, n_inner, strict=True)])
+    return (cdt - ours) / cdt
+
+
+def test_tables_of_no_numbers_lead_to_cdt():
+    """What happens where the table leads nowhere is of good quality."""
+    contours_and_vertices = contours_with_reference_vertices(seed=1001, each=60)
+    result = triangulate(*contours_and_vertices, lambda *rest: np.full((len(rest[-1]), 2), np.nan))
+    assert result.fallbacks.all()
+    e_worst, e_mean = np.abs(errors_against_cdt(*contours_and_vertices, result)).mean(axis=0)
+    assert e_worst < 1e-3 and e_mean < 1e-3
+
+
 def test_calculated_tables_lead_close_to_cdt():
     points, n_contour, n_inner = contours_with_reference_vertices(seed=1000, each=450)
 
@@ -39,13 +59,7 @@ def test_calculated_tables_lead_close_to_cdt():
 
     result = triangulate(points, n_contour, n_inner, calculated)
     assert not result.fallbacks.any()
-    flat = result.triangles + result.owner[:, None] * points.shape[1]
-    quality = element_quality(points.reshape(-1, 2), flat)
-    worst = np.ones(len(points))
-    np.minimum.at(worst, result.owner, quality)
-    ours = np.column_stack([worst, np.bincount(result.owner, quality) / np.bincount(result.owner)])
-    cdt = np.array([delaunay_quality(row[: n + m], n) for row, n, m in zip(points, n_contour, n_inner, strict=True)])
-    error = (cdt - ours) / cdt
+    error = errors_against_cdt(points, n_contour, n_inner, result)
     checked = 0
     for group in np.unique(np.column_stack([n_contour, n_inner]), axis=0):
         rows = (n_contour == group[0]) & (n_inner == group[1])
