@@ -6,10 +6,14 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
+from tessera.placement import MOST_INNER
+from tessera.scheme import LARGEST_CONTOUR
+
 from .data import Examples, elements_of, move_batch, score_batch, table_batch
 
 DEVICE = "cuda" if torch.cuda.is_available() else "cpu"
 
+_MOST_ELEMENTS = LARGEST_CONTOUR + 2 * MOST_INNER - 2
 # How sharply NN3's entries are compared: broadly, and between near ties.
 _SHARPNESS = (20.0, 200.0)
 
@@ -66,7 +70,7 @@ def move_loss(net: nn.Module, batch: dict[str, np.ndarray]) -> Tensor:
     The shares of all passes add up to 1, half of it the last one's.
     """
     given = batch["inner"]
-    elements, ok = np.empty((len(given), 80, 3), np.int64), np.zeros(len(given), bool)
+    elements, ok = np.empty((len(given), _MOST_ELEMENTS, 3), np.int64), np.zeros(len(given), bool)
     contour, n_contour, n_inner = (tensor(batch[name]) for name in ("contour", "n_contour", "n_inner"))
     total = 0 * next(net.parameters()).sum()
     passes = net.trajectory(contour, n_contour, tensor(given), n_inner)

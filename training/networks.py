@@ -55,6 +55,7 @@ class Scores(nn.Module):
         lowered = torch.cat([at * -2, torch.ones_like(square), square], 1)
         along = shape.along @ lowered
         foot = torch.minimum(torch.relu(along), shape.lengths)
+        # Grid points look further than vertices: their rates are smaller.
         wide, middle, narrow = closeness(0.4 * (shape.lifted @ lowered + foot * (foot - 2 * along)))
         pairs = [wide, middle, narrow, wide * foot, middle * foot]  # (B, N, M) each
         pairs = torch.cat([pair.unsqueeze(2) for pair in pairs], 2).flatten(1, 2)

@@ -58,12 +58,12 @@ def join(parts: list[Contours]) -> Contours:
 
 
 def sub_contours(
-    contours: Contours, apex: np.ndarray, sides: np.ndarray, below: np.ndarray, bits: np.ndarray
+    contours: Contours, apex: np.ndarray, sides: np.ndarray, not_lower: np.ndarray, bits: np.ndarray
 ) -> Contours:
     """What elements leave of every contour: its cavities as contours, with the inner vertices that lie in them.
 
-    apex: (B, F) int64, the vertex that each facet is connected to, -1 where there is none; sides: `edge_sides`; below:
-    (B, V) words, the vertices not lower than each; bits: (B, V) words of the vertices.
+    apex: (B, F) int64, the vertex that each facet is connected to, -1 where there is none; sides: `edge_sides`;
+    not_lower: (B, V) words, the vertices not lower than each; bits: (B, V) words of the vertices.
     """
     parent, row, place = _cavities(contours.n_contour, apex)
     facet, odd = place >> 1, place & 1
@@ -79,8 +79,8 @@ def sub_contours(
         (edges,) = np.nonzero((inside != 0)[at])
         owner, start, apex = parent[at[edges]], (facet + odd)[edges], apex[edges]
         left, right = sides[owner, apex, start].T
-        start_below, apex_below = below[owner, start % contours.n_contour[owner]], below[owner, apex]
-        passed = (start_below & ~apex_below & left) | (~start_below & apex_below & right)
+        over_start, over_apex = not_lower[owner, start % contours.n_contour[owner]], not_lower[owner, apex]
+        passed = (over_start & ~over_apex & left) | (~over_start & over_apex & right)
         size = n_contour[open_ones]
         inside[open_ones] &= np.bitwise_xor.reduceat(passed, np.cumsum(size) - size)
     inner_cavity, inner = np.nonzero(as_bools(inside, bits[parent]))

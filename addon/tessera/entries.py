@@ -46,7 +46,10 @@ def score_entries(
     (left,) = np.nonzero(stuck[row])
     if len(left):
         blunt = _is_bluntest(*(corner[left] for corner in corners), row[left] * n_facets + facet[left])
-        value[left] = np.where(blunt, own[left], -1)
+        # Beside the best of the contour, so that flat elements are told apart too.
+        best = np.zeros(len(points))
+        np.maximum.at(best, row[left], own[left])
+        value[left] = np.where(blunt, own[left] / np.maximum(best[row[left]], np.finfo(float).tiny), -1)
     scores = np.zeros(len(points) * n_facets * width, dtype=np.int32)
     scores[(row * n_facets + facet) * width + vertex] = (value * 2**BITS).astype(np.int32) + 1
     return scores.reshape(-1, n_facets, width), np.flatnonzero(stuck)

@@ -1,7 +1,7 @@
 """The grid over each cavity that NN2 scores (paper, section 2.4), and which of its points may become inner vertices.
 
 Everything here is in grid units, the origin in the middle of a contour's bounding box, so that the grid itself is the
-same for all contours of a resolution. In single precision: these are candidates, what is placed is checked again.
+same for all contours of a resolution. In single precision: the margin that candidates keep is far above its rounding.
 """
 
 from __future__ import annotations

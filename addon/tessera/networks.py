@@ -20,6 +20,8 @@ FOLDER = Path(__file__).resolve().parents[2] / "onnx_models"
 _PADDED_EDGES = np.array([4, 8, 12, 16, 24, 32, 48, 64])
 _PADDED_INNER = np.array([1, 2, 4, 8, 12, 16, 24, 32])
 _PADDED_GRID = np.array([16, 32, 48, 64, 96, 128, 192, 256, 400, 48 * 48])
+_MOST = 1e9  # inner vertices that NN1 may ask for
+_KNOWN_TARGETS = 0.05, 20.0  # scaled target edge lengths that NN1 is asked about
 # Points in one call, so that what a network holds at a time stays in the processor's cache.
 _CALL_SIZE = 1 << 12
 
@@ -37,14 +39,22 @@ def session(role: str) -> onnxruntime.InferenceSession:
 
 def count_inner_vertices(contour: np.ndarray, n_contour: np.ndarray, l_s: np.ndarray) -> np.ndarray:
     """NN1: how many inner vertices each contour needs at its scaled target edge length: (B,) int64."""
-    count = np.zeros(len(n_contour))
+    count, known = np.zeros(len(n_contour)), np.clip(l_s, *_KNOWN_TARGETS)
     for rows, n, _ in _groups(n_contour, np.zeros_like(n_contour), _PADDED_INNER):
         (count[rows],) = session("nn1").run(
             None,
-            {"contour": _single(contour, rows, n), "n_contour": n_contour[rows], "l_s": l_s[rows].astype(np.float32)},
+            {
+                "contour": _single(contour, rows, n),
+                "n_contour": n_contour[rows],
+                "l_s": known[rows].astype(np.float32),
+            },
         )
-    # Rounded first: an answer on the border between two counts falls to the same side on every processor.
-    return np.rint(np.round(count, 3)).astype(np.int64)
+    # Far from what the network knows, the number goes with the square.
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        count *= (known / l_s) ** 2
+    # Rounded first, so that a last bit, which may depend on the processor, decides less often.
+    count = np.nan_to_num(np.round(count, 3), nan=0, posinf=_MOST, neginf=0)
+    return np.rint(np.clip(count, 0, _MOST)).astype(np.int64)
 
 
 def score_grid(
@@ -93,7 +103,7 @@ def move_inner_vertices(
             },
         )
         size = min(m, inner.shape[1])
-        moved[rows, :size] = out[:, :size]
+        moved[rows, :size] = np.where(np.isfinite(out[:, :size]), out[:, :size], inner[rows, :size])
     return np.where((np.arange(inner.shape[1]) < n_inner[:, None])[..., None], moved, inner)
 
 

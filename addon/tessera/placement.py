@@ -20,7 +20,7 @@ MOST_INNER = 32
 _GRIDS = np.array([6, 8, 12, 16, 20])
 _POINTS_AN_EDGE = 3
 _FINE_GRID = 48
-_FEW = 256  # contours that are checked at a time
+_CHECKED = 256  # contours that are checked at a time
 
 # In even edge lengths:
 _MARGIN = 0.2  # grid points closer to the contour are left out
@@ -86,7 +86,11 @@ def _decode(
         scores = np.full(grids.admissible.shape, np.inf, dtype=np.float32)
         np.put_along_axis(scores, order, found, axis=1)
         offsets = _refinement(scores.reshape(-1, resolution, resolution)).reshape(len(scores), 2, -1)
-        points += np.take_along_axis(offsets, order[:, None], axis=2)
+        offsets = np.take_along_axis(offsets, order[:, None], axis=2)
+        # No farther than leaves the margin of moved vertices, whatever the scores are.
+        farthest = ((_MARGIN - _MOVED_MARGIN) * even / grids.spacing).astype(np.float32)[:, None, None]
+        way = np.sqrt((offsets * offsets).sum(axis=1, keepdims=True))
+        points += offsets * np.minimum(1, farthest / np.maximum(way, np.float32(1e-9)))
         inner, count = _choose(points, found, n_inner, (even / grids.spacing).astype(np.float32))
         return np.swapaxes(grids.places(np.swapaxes(inner, 1, 2)), 1, 2), count
 
@@ -140,7 +144,7 @@ def _keep_valid(
     kept = placed.copy()
     # Contours of like numbers together, and few, so that the distances of all pairs stay in the processor's cache.
     order = np.argsort(n_inner, kind="stable")
-    for rows in np.array_split(order, -(-len(order) // _FEW)) if len(order) else []:
+    for rows in np.array_split(order, -(-len(order) // _CHECKED)) if len(order) else []:
         m = int(n_inner[rows].max())
         valid = rows[_is_valid(moved[rows, :m], contour[rows], n_contour[rows], n_inner[rows])]
         kept[valid, :m] = moved[valid, :m]

@@ -27,7 +27,7 @@ class ContourMeshes:
     wanted: np.ndarray  # (B,) int64, inner vertices that NN1 asked for
     triangles: np.ndarray  # (t, 3) int32
     owner: np.ndarray  # (t,) int32
-    fallbacks: np.ndarray  # (B,) int32, elements that NN3's table had no say in
+    fallbacks: np.ndarray  # (B,) int32, elements that NN3's table had no say in, or where all were flat
 
 
 def mesh_contours(
@@ -35,9 +35,9 @@ def mesh_contours(
 ) -> ContourMeshes:
     """Mesh contours, each at its own target edge length.
 
-    contours: (B, N, 2) float64, simple and counter-clockwise, n_contour (B,) vertices each, 3 to 16; edge_length: (B,);
-    flips: whether `flips.flip_edges` passes over the meshes in the end. A large batch goes through in pieces, so that
-    memory grows by no more than the meshes.
+    contours: (B, N, 2) float64, simple and counter-clockwise, n_contour (B,) vertices each, 3 to 16, then padding of
+    any value; edge_length: (B,); flips: whether `flips.flip_edges` passes over the meshes in the end. A large batch
+    goes through in pieces, so that memory grows by no more than the meshes.
     """
     pieces = [
         _mesh_piece(contours[rows], n_contour[rows], edge_length[rows], watch, flips)
@@ -50,6 +50,9 @@ def _mesh_piece(
     contours: np.ndarray, n_contour: np.ndarray, edge_length: np.ndarray, watch: Stopwatch, flips: bool
 ) -> ContourMeshes:
     """`mesh_contours` for all at a time."""
+    # Padding of any value: the first vertex again.
+    padding = np.arange(contours.shape[1]) >= n_contour[:, None]
+    contours = np.where(padding[..., None], contours[:, :1], contours)
     with watch("transformation"):
         transformation = superimpose(contours, n_contour)
         transformed = transformation.apply(contours)
@@ -100,7 +103,7 @@ def connect(
         rated = networks.rate_connections(
             transformation.apply(contour), n_contour, transformation.apply(inner), n_inner, entries
         )
-        # Rounded, so that the last bits, which may depend on the processor, decide nothing.
+        # Rounded, so that a last bit, which may depend on the processor, decides less often.
         return np.round(rated, 4)
 
 

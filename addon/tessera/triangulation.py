@@ -86,8 +86,9 @@ Connect = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 _SIZES = (5, 7, 10, 14, 20)
 # So few contours join those of the next size, as calls cost more than padding.
 _FEW = 128
-# Size in bytes of the sign tensor that is held at a time.
+# Size in bytes of the words of sides that are held at a time.
 _CHUNK_SIZE = 1 << 26
+_NOT_AS_DESCRIBED = "contour {} is no simple counter-clockwise polygon with its inner vertices inside"
 
 
 @dataclass(frozen=True)
@@ -108,8 +109,8 @@ def triangulate(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, 
     int64, sorted (contour, facet, vertex) -> (P, 2) float64, their (q_worst, q_mean). It is asked once for all contours
     of a level of the recursion, whose edges can be as many as a contour has vertices; contours of up to 32, up to 64
     and more vertices, and parts of a large batch, go separately. Coordinates are within 1e±100, as `contour.py` sees
-    to. Raises ValueError where no element is possible, which is so only if a contour is not as described; other such
-    contours may go unnoticed.
+    to. Raises ValueError where no element is possible or the number of elements is not N_C + 2 N_I - 2, which is so
+    only if a contour is not as described; other such contours may go unnoticed.
     """
     n_rows, width = points.shape[:2]
     n_contour, n_inner = np.asarray(n_contour, dtype=np.int64), np.asarray(n_inner, dtype=np.int64)
@@ -119,7 +120,11 @@ def triangulate(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, 
         triangles, owner, fallbacks[rows] = _triangulate(points[rows], n_contour[rows], n_inner[rows], rows, connect)
         elements.append(triangles)
         owners.append(rows[owner])
-    return Triangulation(*_in_order(np.concatenate(elements), np.concatenate(owners), width), fallbacks)
+    triangles, owner = _in_order(np.concatenate(elements), np.concatenate(owners), width)
+    wrong = np.flatnonzero(np.bincount(owner, minlength=n_rows) != n_contour + 2 * n_inner - 2)
+    if len(wrong):
+        raise ValueError(_NOT_AS_DESCRIBED.format(wrong[0]))
+    return Triangulation(triangles, owner, fallbacks)
 
 
 def _chunks(size: np.ndarray) -> Iterator[np.ndarray]:
@@ -141,7 +146,7 @@ def _triangulate(
     slots = np.broadcast_to(np.arange(width, dtype=np.int32), (n_rows, width))
     level = Contours(points[:, :width].astype(np.float64), slots, np.arange(n_rows, dtype=np.int32), n_contour, n_inner)
     bits = bits_of(width)
-    sides, below = _look_around(level, bits)
+    sides, not_lower = _look_around(level, bits)
     elements, owners, fallbacks = [], [], np.zeros(n_rows, dtype=np.int32)
     while len(level.owner):
         level, groups = _by_size(level)
@@ -150,7 +155,7 @@ def _triangulate(
         rest = []
         for group, view, table in zip(groups, views, tables, strict=True):
             triangles, row, stuck, apex = _connect_facets(group, *view, *table)
-            left = sub_contours(group, apex, view[0], below[group.owner[:, None], group.slots], view[1])
+            left = sub_contours(group, apex, view[0], not_lower[group.owner[:, None], group.slots], view[1])
             single = (left.n_contour == 3) & (left.n_inner == 0)
             elements += [np.take_along_axis(group.slots[row], triangles, axis=1), left.slots[single, :3]]
             owners += [group.owner[row], left.owner[single]]
@@ -204,7 +209,7 @@ def _ask(
         hopeless = ~(words != 0).any(axis=0)
         if hopeless.any():
             contour = number[group.owner[hopeless][0]]
-            raise ValueError(f"contour {contour} is no simple counter-clockwise polygon with its inner vertices inside")
+            raise ValueError(_NOT_AS_DESCRIBED.format(contour))
         possible.append(words)
         entries.append(list_entries(words, bits))
     together = np.concatenate(entries, axis=1)
@@ -250,6 +255,7 @@ def _connect_facets(
         possible = possible & ~_excluded(sides, bits, rows, facet, end, vertex, n)
         possible[facet, index] = 0
         best = best * (possible != 0)
+        # Facets whose best entry is closed take their next best one.
         facet, index = np.nonzero((possible & chosen == 0) & (best > 0))
         if len(index):
             row = rows[index]

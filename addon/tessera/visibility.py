@@ -1,10 +1,10 @@
 """Which elements are possible: on which side of all lines through a contour vertex all vertices lie, and the tests.
 
 Every decision of the triangulation is taken from these sides, so no two decisions can contradict each other. They are
-computed once a recursion level, as batched products of small matrices in single precision; what the error bound leaves
-open goes to `predicates.orientation`. They are kept as words, one bit for each vertex, and one operation on words tests
-a line or a triangle against all vertices at once. Arrays of words that much is done with have the contours last, as
-operations on long rows are fast.
+computed once for all levels of the recursion, as batched products of small matrices in single precision; what the error
+bound leaves open goes to `predicates.orientation`. They are kept as words, one bit for each vertex, and one operation
+on words tests a line or a triangle against all vertices at once. Arrays of words that much is done with have the
+contours last, as operations on long rows are fast.
 
 Words are unsigned integers or, for more than 64 bits, Python's own in object arrays: the same operators, only slower.
 """
@@ -13,10 +13,11 @@ import numpy as np
 
 from .predicates import orientation
 
-# Single precision, u = 2^-24, with every contour moved and stretched into [-1, 1]². Rounding a vertex changes a
-# determinant by at most 4 u, so three do by 12 u. Of its three products, those of a coordinate and a coefficient are
-# below 2 with an error of 4 u each, the constant term has 4 u, and adding them, in whatever order, has less than 12 u.
-# The bound is nearly twice the sum, 36 u.
+# Single precision, u = 2^-24, with every contour moved and stretched into [-1, 1]² (up to twice that if it is a few
+# ulps wide, which the rest of the bound covers). Rounding a vertex changes a determinant by at most 4 u, so three do
+# by 12 u. Of its three products, those of a coordinate and a coefficient are below 2 with an error of 4 u each, the
+# constant term has 4 u, and adding them, in whatever order, has less than 12 u. The bound is nearly twice the sum, 36
+# u.
 _ERROR_BOUND = np.float32(2.0**-18)
 # Determinants computed at a time, so that they stay in the processor's cache.
 _BLOCK_SIZE = 1 << 17

@@ -18,6 +18,8 @@ def place(contour, count):
 
 def assert_valid(contour, inner, count):
     n = np.array([contour.shape[1]])
+    if not count:
+        return
     assert is_inside(inner, contour, n).all()
     gap = 0.05 * even_lengths(contour, n, np.array([count]))[0]
     assert distances_to_contour(inner, contour, n).min() > gap
@@ -32,10 +34,12 @@ def test_as_many_as_asked_for(count):
     assert_valid(SQUARE, inner[:, :count], count)
 
 
-def test_a_thin_cavity_holds_what_fits():
-    inner, found = place(THIN, 3)
-    if found[0]:
-        assert_valid(THIN, inner[:, : found[0]], int(found[0]))
+@pytest.mark.parametrize(("height", "fitting"), [(1, 0), (10, 3)])
+def test_a_thin_cavity_holds_what_fits(height, fitting):
+    cavity = THIN * [1, height]
+    inner, found = place(cavity, 3)
+    assert found[0] == fitting
+    assert_valid(cavity, inner[:, : found[0]], int(found[0]))
 
 
 def test_none_asked_for():
@@ -52,3 +56,21 @@ def test_a_network_that_sends_vertices_astray_moves_none(wrong, monkeypatch):
     inner, found = place(SQUARE, 6)
     assert found[0] == 6
     assert_valid(SQUARE, inner, 6)
+
+
+@pytest.mark.parametrize("count", [2, 5, 12, 32])
+def test_scores_cannot_draw_vertices_across_a_notch(count, monkeypatch):
+    """Scores that fall towards the tip of a notch, between the grid's points, and a network that moves nothing."""
+    even = even_lengths(SQUARE, np.array([4]), np.array([count]))
+    for tip in np.linspace(0.05, 0.5, 10):
+        notched = np.array([[(-1, -1), (1, -1), (1, 0.98), (tip, tip), (0.98, 1), (-1, 1)]])
+
+        def towards_the_tip(contour, n_contour, n_inner, grid, n_grid, tip=tip):
+            away = np.hypot(*(grid - tip).swapaxes(0, 1))
+            scores = np.where(away < 0.8 * even, away - 9, 0).astype(np.float32)
+            return np.where(np.arange(grid.shape[2]) < n_grid[:, None], scores, np.inf)
+
+        monkeypatch.setattr(networks, "score_grid", towards_the_tip)
+        monkeypatch.setattr(networks, "move_inner_vertices", lambda contour, n_contour, inner, n_inner: inner)
+        inner, found = place(notched, count)
+        assert_valid(notched, inner[:, : found[0]], int(found[0]))

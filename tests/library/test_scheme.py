@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import tessera
+from tessera import networks
 from tessera.scheme import join_vertices, mesh_contours
 from tessera.stopwatch import Stopwatch
 from tests.validity import check_many, check_mesh
@@ -67,3 +68,37 @@ def test_mesh_contour_of_too_many_edges():
     with pytest.raises(tessera.ContourError) as error:
         tessera.mesh_contour(np.stack([np.cos(angle), np.sin(angle)], axis=1), 0.3)
     assert error.value.reason == "too-many-edges"
+
+
+@pytest.mark.parametrize("answer", [np.nan, np.inf, -5.0, 1e30])
+@pytest.mark.parametrize("role", ["nn1", "nn2_scores", "nn2_moves", "nn3"])
+def test_whatever_a_network_answers_meshes_are_valid(role, answer, monkeypatch):
+    shipped = networks.session
+
+    class Wrong:
+        def run(self, _, inputs):
+            return [np.full_like(out, answer) for out in shipped(role).run(None, inputs)]
+
+    monkeypatch.setattr(networks, "session", lambda asked: Wrong() if asked == role else shipped(asked))
+    points, n_contour = sector_contours(3, 30)
+    meshes = mesh(points, n_contour, np.full(30, 0.4))
+    assert (meshes.wanted >= 0).all()
+    vertices = join_vertices(points, n_contour, meshes.inner, meshes.n_inner)
+    check_many(vertices, n_contour, meshes.n_inner, meshes.triangles, meshes.owner)
+
+
+@pytest.mark.parametrize("padding", [np.nan, np.inf, -1e300, 0.1])
+def test_padding_is_of_any_value(padding):
+    points, n_contour = sector_contours(4, 30)
+    expected = mesh(points, n_contour, np.full(30, 0.4))
+    points[np.arange(16) >= n_contour[:, None]] = padding
+    found = mesh(points, n_contour, np.full(30, 0.4))
+    assert np.array_equal(found.triangles, expected.triangles) and np.array_equal(found.inner, expected.inner)
+
+
+@pytest.mark.parametrize("edge_length", [1e-300, 1e-19, 1e-9, 1e9, 1e300])
+def test_a_target_far_from_the_contour_s_size(edge_length):
+    contour = [(0, 0), (4, 0), (4, 3), (2, 1.5), (0, 3)]
+    mesh = tessera.mesh_contour(contour, edge_length)
+    check_mesh(mesh.vertices, mesh.triangles, [contour])
+    assert bool(mesh.report.warnings) == (edge_length < 1)

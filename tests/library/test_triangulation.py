@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 
+from tessera.quality import element_quality
 from tessera.triangulation import triangulate
 from tessera.visibility import as_bools, bits_of, edge_sides, possible_elements, vertex_sides
 from tests.library.adversaries import (
@@ -135,3 +136,20 @@ def test_what_is_no_counter_clockwise_polygon_is_refused(points):
 def test_no_contours():
     result = triangulate(np.zeros((0, 5, 2)), np.zeros(0, int), np.zeros(0, int), filled(1.0))
     assert result.triangles.shape == (0, 3) and len(result.owner) == 0 and len(result.fallbacks) == 0
+
+
+def test_flat_elements_are_told_apart():
+    """A strip so thin that a quality is below what entries are compared to: its best elements all the same."""
+    width, n = 1e-8, 6
+    upper = np.column_stack([np.arange(n)[::-1], np.full(n, width)])
+    strip = np.concatenate([np.column_stack([np.arange(n), np.zeros(n)]), upper])
+    points = strip[None].astype(float)
+    result = triangulate(points, np.array([2 * n]), np.array([0]), lambda *rest: np.ones((len(rest[-1]), 2)))
+    check_many(points, np.array([2 * n]), np.array([0]), result.triangles, result.owner)
+    assert element_quality(strip, result.triangles).min() > 1.5 * width
+
+
+def test_vertices_outside_the_contour_raise():
+    points = np.array([[(0, 0), (1, 0), (1, 1), (0, 1), (2, 2), (0.5, 0.5)]], dtype=float)
+    with pytest.raises(ValueError, match="inner vertices inside"):
+        triangulate(points, np.array([4]), np.array([2]), lambda *rest: np.ones((len(rest[-1]), 2)))
