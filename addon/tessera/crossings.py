@@ -7,7 +7,7 @@ import numpy as np
 from .predicates import segments_cross
 
 # Below this many segments, testing all pairs is cheaper than dividing further.
-_LEAF = 24
+_LEAF = 32
 # Segments that keep being cut into pieces cannot be separated (a scribble): test all pairs instead.
 _MOST_PIECES = 16
 _BLOCK = 1_000_000
@@ -58,12 +58,17 @@ def _close_pairs(start: np.ndarray, end: np.ndarray, group: np.ndarray) -> Itera
     start, end = start - origin, end - origin
     while len(segment):
         _, group, count = np.unique(group, return_inverse=True, return_counts=True)
+        small = (count <= _LEAF)[group]
+        if small.any():
+            yield from _pairs_within(segment[small], group[small], start[small], end[small], padding)
+            segment, group, start, end = (part[~small] for part in (segment, group, start, end))
+            continue
         normal, split = _median_line(start, end, group, count)
         from_, to = (np.sum(p * normal[group], axis=1) - split[group] for p in (start, end))
         left, right = np.minimum(from_, to) <= padding, np.maximum(from_, to) >= -padding
         larger = np.maximum(np.bincount(group, left), np.bincount(group, right))
         crowded = len(segment) > _MOST_PIECES * (segment.max() + 100)
-        leaf = ((count <= _LEAF) | (larger > 0.9 * count) | crowded)[group]
+        leaf = ((larger > 0.9 * count) | crowded)[group]
         yield from _pairs_within(segment[leaf], group[leaf], start[leaf], end[leaf], padding)
         with np.errstate(divide="ignore", invalid="ignore"):
             cut = start + (from_ / (from_ - to))[:, None] * (end - start)
