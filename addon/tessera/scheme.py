@@ -95,14 +95,11 @@ def connect(
     """
     with watch("NN3"):
         n, m = int(n_contour.max()), max(1, int(n_inner.max()))
-        contour = points[:, :n]
+        transformed = superimpose(points[:, :n], n_contour).apply(points)
         # Inner vertices start at each contour's own N_C here and at the padded one in the network.
         index = np.minimum(n_contour[:, None] + np.arange(m), points.shape[1] - 1)
-        inner = np.take_along_axis(points, index[..., None], axis=1)
-        transformation = superimpose(contour, n_contour)
-        rated = networks.rate_connections(
-            transformation.apply(contour), n_contour, transformation.apply(inner), n_inner, entries
-        )
+        inner = transformed[np.arange(len(points))[:, None], index]
+        rated = networks.rate_connections(transformed[:, :n], n_contour, inner, n_inner, entries)
         # Rounded, so that a last bit, which may depend on the processor, decides less often.
         return np.round(rated, 4)
 

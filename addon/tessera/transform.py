@@ -70,10 +70,10 @@ def _superimpose(z: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     radius = np.abs(z)
     # Rounded, so that equal radii that differ in the last bits still choose the same vertex.
     first = np.argmax(np.round(radius / radius.max(axis=1, keepdims=True), 9), axis=1)
-    z = np.take_along_axis(z, (np.arange(n) + first[:, None]) % n, axis=1)
-    size = np.sqrt((np.abs(z) ** 2).sum(axis=1))
+    size = np.sqrt((radius * radius).sum(axis=1))
     polygon = np.exp(2j * np.pi * np.arange(n) / n) / np.sqrt(n)
-    c = (z * polygon.conj()).sum(axis=1) / size
+    # Starting with another vertex is turning the polygon.
+    c = (z * polygon.conj()).sum(axis=1) * polygon[first] * (np.sqrt(n) / size)
     resemblance = np.abs(c)
     turn = np.where(resemblance > 1e-12, np.conj(c) / np.maximum(resemblance, 1e-12), 1.0)
     scale = np.sqrt(n) * np.maximum(resemblance, SMALLEST_RESEMBLANCE) / size

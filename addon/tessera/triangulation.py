@@ -186,6 +186,8 @@ def _view(contours: Contours, sides: np.ndarray, bits: np.ndarray) -> tuple[np.n
 
 def _by_size(contours: Contours) -> tuple[Contours, list[Contours]]:
     """The contours, those of similar size one after the other, and in groups, so that padding wastes little."""
+    if len(contours.owner) < _FEW:
+        return contours, [contours]
     size = np.digitize(contours.n_contour + contours.n_inner, _SIZES)
     contours = contours.rows(np.argsort(size, kind="stable"))
     ends = [0]
