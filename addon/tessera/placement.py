@@ -120,13 +120,12 @@ def _choose(
     rows = np.argsort(-n_inner, kind="stable")
     x, y = np.moveaxis(places[rows] / (_CROWDED * even[rows, None, None]), 1, 0)
     cost = scores[rows]
-    inner, count = np.zeros((len(rows), int(n_inner.max()), 2)), np.zeros_like(n_inner)
-    for k in range(inner.shape[1]):
+    chosen = np.zeros((int(n_inner.max()), len(rows)), dtype=np.int64)
+    found = np.full(chosen.shape, np.inf)
+    for k in range(len(chosen)):
         m = np.count_nonzero(n_inner > k)
         going, best = np.arange(m), cost[:m].argmin(axis=1)
-        fits = np.isfinite(cost[going, best])
-        inner[rows[:m][fits], k] = places[rows[:m], :, best][fits]
-        count[rows[:m][fits]] += 1
+        chosen[k, :m], found[k, :m] = best, cost[going, best]
         dx, dy = x[:m] - x[going, best][:, None], y[:m] - y[going, best][:, None]
         dx *= dx
         dy *= dy
@@ -134,6 +133,11 @@ def _choose(
         # Twice what is missing to the crowding distance, squared.
         cost[:m] += np.maximum(2 - 2 * dx, 0)
         cost[:m][dx < (_CLOSEST / _CROWDED) ** 2] = np.inf
+    # Where nothing was left, nothing is placed from then on.
+    fits = np.isfinite(found)
+    inner, count = np.zeros((len(rows), len(chosen), 2)), np.zeros_like(n_inner)
+    inner[rows] = np.where(fits[..., None], places[rows, :, chosen], 0).swapaxes(0, 1)
+    count[rows] = np.count_nonzero(fits, axis=0)
     return inner, count
 
 

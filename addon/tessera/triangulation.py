@@ -1,14 +1,15 @@
 """The triangulation algorithm (section 2.5.1, Algorithm 3): connection tables lead from contours to meshes, in batches.
 
 All contours of a batch advance together: in one step, each connects the facet of its best entry with that entry's
-vertex, and closes the entries that this makes impossible. Beside the paper's listing:
+vertex, and of the next best ones as many as would follow it (`overlaps.compatible`), and closes the entries that this
+makes impossible. Beside the paper's listing:
 
 - Line 7 (order of rows and columns): the best entry of each facet is kept, and the best of them is taken
   (`_connect_facets`, `entries.score_entries`).
 - Line 9 (validate): an entry is possible if its triangle is counter-clockwise, holds no other vertex of the contour, on
   its sides neither, and its new edges cross no facet (`visibility.possible_elements`). After each new element the
-  entries that overlap it are closed, so that the best entry left needs no validation (`_excluded`). A facet whose best
-  entry is closed takes its next best one (lines 11 and 14).
+  entries that overlap it are closed, so that the best entry left needs no validation (`overlaps.excluded_entries`). A
+  facet whose best entry is closed takes its next best one (lines 11 and 14).
 - Lines 10-12, 18-21 (group ids): found in the end, from where each facet's element goes (`cavities._cavities`); until
   then no decision needs them, as an entry whose facet and vertex are in different groups overlaps an element.
 - Lines 13-15, 22-26 (V_locked, F_locked): a vertex is locked when no edge of any cavity starts from it, a facet when it
@@ -37,9 +38,9 @@ Why it always ends with a valid mesh, whatever the tables are:
    other in its closure, apart from common ones: without proper crossing, edges could only meet in a vertex, or along
    each other with an end of one on the other. So one triangle would lie in the other, or a corner they share would have
    an edge of one enter the other, which it could leave only across the opposite side. These two cases are what
-   `_excluded` closes. New edges start from contour vertices, as the third edge of every entry is a facet. If the common
-   edge is a facet, new edges cross, as neither triangle holds the other's third vertex; or it is the same triangle,
-   which has new edges in common too. So an entry that is left lies in one cavity, as its facet does.
+   `excluded_entries` closes. New edges start from contour vertices, as the third edge of every entry is a facet. If the
+   common edge is a facet, new edges cross, as neither triangle holds the other's third vertex; or it is the same
+   triangle, which has new edges in common too. So an entry that is left lies in one cavity, as its facet does.
 2. What is left beside the elements is a set of simple polygons with the remaining vertices strictly inside, by
    induction. An element on facet (a, b) of such a polygon with apex v inside it leaves one: a, v, b replaces a, b, and
    v was not on it. With v on its boundary, it leaves the part from b to v and that from v to a. Each vertex but v is
@@ -69,21 +70,15 @@ import numpy as np
 
 from .cavities import Contours, join, sub_contours
 from .entries import list_entries, score_entries
-from .visibility import (
-    bits_of,
-    crossing,
-    edge_sides,
-    lines_to,
-    pack_words,
-    padded_size,
-    possible_elements,
-    vertex_sides,
-)
+from .overlaps import compatible, excluded_entries
+from .visibility import bits_of, edge_sides, pack_words, padded_size, possible_elements, vertex_sides
 
 Connect = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 # Where contours are divided by their number of vertices into groups of a level.
 _SIZES = (5, 7, 10, 14, 20)
+# Best entries of a contour that are looked at in a step: of many contours, and of few, whose calls cost more.
+_TOGETHER = 3, 8
 # So few contours join those of the next size, as calls cost more than padding.
 _FEW = 128
 # Size in bytes of the words of sides that are held at a time.
@@ -242,20 +237,27 @@ def _connect_facets(
     chosen = np.take_along_axis(bits, vertices, axis=1).T.copy()
     vertices = vertices.T.copy()
     rows = np.arange(len(scores))
+    together = _TOGETHER[len(rows) < _FEW]
     elements = []
     for number in range(1, len(best) + 1):
-        facet, index = best.argmax(axis=0), np.arange(len(rows))
-        going = best[facet, index] > 0
+        facet = np.argsort(-best, axis=0, kind="stable")[:together]
+        going = best[facet[0], np.arange(len(rows))] > 0
         if not going.all():
-            rows, facet, index = rows[going], facet[going], index[: np.count_nonzero(going)]
+            rows, facet = rows[going], facet[:, going]
             best, vertices, chosen, possible = (part[:, going] for part in (best, vertices, chosen, possible))
         if not len(rows):
             break
-        n = n_contour[rows]
-        vertex, end = vertices[facet, index], (facet + 1) % n
-        elements.append([rows, facet, end, vertex])
-        possible = possible & ~_excluded(sides, bits, rows, facet, end, vertex, n)
-        possible[facet, index] = 0
+        index = np.arange(len(rows))
+        vertex, end = vertices[facet, index], (facet + 1) % n_contour[rows]
+        closed = excluded_entries(sides, bits, rows, facet, end, vertex, n_contour)
+        taken = compatible(closed, facet, end, vertex, chosen[facet, index]) & (best[facet, index] > 0)
+        if number == 1 and len(stuck):
+            taken[1:, stuck] = False
+        place, row = np.nonzero(taken)
+        made = facet[place, row]
+        elements.append([rows[row], made, end[place, row], vertex[place, row]])
+        possible = possible & ~np.bitwise_or.reduce(closed * taken, axis=1)
+        possible[made, row] = 0
         best = best * (possible != 0)
         # Facets whose best entry is closed take their next best one.
         facet, index = np.nonzero((possible & chosen == 0) & (best > 0))
@@ -266,38 +268,11 @@ def _connect_facets(
             chosen[facet, index] = bits[row, vertex]
             best[facet, index] = rest[np.arange(len(rest)), vertex]
         if number == 1 and len(stuck):
-            best[:, np.isin(rows, stuck)] = 0
+            best[:, stuck] = 0
     row, *corners = np.concatenate(elements, axis=1)
     apex = np.full((len(scores), len(best)), -1)
     apex[row, corners[0]] = corners[2]
     return np.stack(corners, axis=1), row, stuck, apex
-
-
-def _excluded(
-    sides: np.ndarray,
-    bits: np.ndarray,
-    rows: np.ndarray,
-    facet: np.ndarray,
-    end: np.ndarray,
-    vertex: np.ndarray,
-    n_contour: np.ndarray,
-) -> np.ndarray:
-    """Entries of other facets that are impossible beside the new element (facet, vertex) of contours `rows` (n,).
-
-    end (n,): the facet's second vertex. Returns words (F, n).
-    """
-    to_corners = lines_to(sides, rows, np.array([facet, end, vertex]))
-    place = (rows * sides.shape[1] + vertex) * sides.shape[2] + facet
-    edges = sides.reshape(-1, 2).take([place, place + 1], axis=0).transpose(0, 2, 1)
-    crossed = crossing(to_corners[:2], to_corners[2:], edges, bits[rows, vertex][None])
-    excluded = crossed[:-1] | crossed[1:]
-    # Elements on the same side of one of the new edges; an inner vertex has no facets.
-    (index,) = np.nonzero(vertex < n_contour)
-    if len(index):
-        row, vertex = rows[index], vertex[index]
-        excluded[vertex, index] |= bits[row, end[index]]
-        excluded[(vertex - 1) % n_contour[index], index] |= bits[row, facet[index]]
-    return excluded
 
 
 def _in_order(triangles: np.ndarray, owner: np.ndarray, width: int) -> tuple[np.ndarray, np.ndarray]:
