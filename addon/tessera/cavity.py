@@ -12,7 +12,7 @@ def next_vertices(contour: np.ndarray, n_contour: np.ndarray) -> np.ndarray:
     """(B, N, 2) the end of the edge that starts at each contour vertex."""
     index = np.arange(contour.shape[1])
     after = np.where(index + 1 < n_contour[:, None], index + 1, 0)
-    return np.take_along_axis(contour, after[..., None], axis=1)
+    return contour[np.arange(len(contour))[:, None], after]
 
 
 def areas(contour: np.ndarray, n_contour: np.ndarray) -> np.ndarray:

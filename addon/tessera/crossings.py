@@ -28,7 +28,7 @@ def crossing_pairs(start: np.ndarray, end: np.ndarray, group: np.ndarray) -> np.
         total += len(found[-1])
         if total > MOST_PAIRS:
             break
-    return np.unique(np.concatenate(found), axis=0)
+    return np.unique(np.concatenate(found), axis=0) if total else found[0]
 
 
 def crossing_place(start: np.ndarray, end: np.ndarray, pair: np.ndarray) -> tuple[float, float]:

@@ -13,6 +13,7 @@ is first shifted to begin at the vertex farthest from its centre.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -65,19 +66,25 @@ def superimpose(contours: np.ndarray, n_contour: np.ndarray) -> Transformation:
 def _superimpose(z: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Centre, factor and first vertex of contours of the same number of vertices, (B, N_C) complex."""
     n = z.shape[1]
-    centre = z.mean(axis=1)
+    centre = z.sum(axis=1) / n
     z = z - centre[:, None]
     radius = np.abs(z)
     # Rounded, so that equal radii that differ in the last bits still choose the same vertex.
     first = np.argmax(np.round(radius / radius.max(axis=1, keepdims=True), 9), axis=1)
     size = np.sqrt((radius * radius).sum(axis=1))
-    polygon = np.exp(2j * np.pi * np.arange(n) / n) / np.sqrt(n)
+    polygon = _regular_polygon(n)
     # Starting with another vertex is turning the polygon.
     c = (z * polygon.conj()).sum(axis=1) * polygon[first] * (np.sqrt(n) / size)
     resemblance = np.abs(c)
     turn = np.where(resemblance > 1e-12, np.conj(c) / np.maximum(resemblance, 1e-12), 1.0)
     scale = np.sqrt(n) * np.maximum(resemblance, SMALLEST_RESEMBLANCE) / size
     return centre, scale * turn, first
+
+
+@cache
+def _regular_polygon(n: int) -> np.ndarray:
+    """(n,) complex128 vertices, normalised."""
+    return np.exp(2j * np.pi * np.arange(n) / n) / np.sqrt(n)
 
 
 def _as_complex(points: np.ndarray) -> np.ndarray:

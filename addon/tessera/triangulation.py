@@ -233,10 +233,10 @@ def _connect_facets(
     scores, stuck = score_entries(contours.points, n_contour, entries, values)
     # The best entry of each facet, kept up to date.
     vertices = scores.argmax(axis=2)
-    best = np.take_along_axis(scores, vertices[..., None], axis=2)[..., 0].T.copy()
-    chosen = np.take_along_axis(bits, vertices, axis=1).T.copy()
-    vertices = vertices.T.copy()
     rows = np.arange(len(scores))
+    best = scores[rows[:, None], np.arange(scores.shape[1]), vertices].T.copy()
+    chosen = bits[rows[:, None], vertices].T.copy()
+    vertices = vertices.T.copy()
     together = _TOGETHER[len(rows) < _FEW]
     elements = []
     for number in range(1, len(best) + 1):
