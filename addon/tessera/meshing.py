@@ -19,6 +19,7 @@ from .refinement import refine
 from .remeshing import improve
 from .scheme import LARGEST_CONTOUR, join_vertices, mesh_contours
 from .sizing import LONG, grade_from_edges
+from .smoothing import smooth as move_downhill
 from .stopwatch import Stopwatch
 
 MOST_TRIANGLES = 5_000_000
@@ -32,6 +33,7 @@ def mesh(
     sizing: None = None,
     boundary: str = "resample",
     flips: bool = False,
+    smooth: int = 0,
 ) -> Mesh:
     """Mesh one domain: the planar region that closed curves bound.
 
@@ -39,34 +41,35 @@ def mesh(
     edge_length: the target, in the loops' unit. boundary: "resample" places vertices on the given polylines at the
     target edge length, keeping their corners; "keep" keeps exactly the given vertices and adds none on the contour.
     sizing: for later; only None is accepted. flips: a last pass exchanges edges where that raises the worse quality of
-    the two elements beside them.
+    the two elements beside them. smooth: how often every inner vertex may move after
+    that, to better the poorest elements.
 
     Raises ContourError, whose ``reason`` is a short word, for input that cannot be meshed, and a plain ValueError for
     what is no sequence of (k, 2) arrays of numbers.
     """
     if sizing is not None:
         raise NotImplementedError("sizing functions are not there yet: leave sizing=None for one target edge length")
-    (result,) = mesh_domains([loops], edge_length, boundary, flips)
+    (result,) = mesh_domains([loops], edge_length, boundary, flips, smooth)
     if isinstance(result, ContourError):
         raise result
     return result
 
 
 def mesh_many(
-    domains: Sequence[Sequence[ArrayLike]], edge_length: float, *, flips: bool = False
+    domains: Sequence[Sequence[ArrayLike]], edge_length: float, *, flips: bool = False, smooth: int = 0
 ) -> list[Mesh | ContourError]:
     """Mesh a batch of domains, each as `mesh` does: a Mesh, or the ContourError that it has, for each.
 
     Raises ContourError "edge-length" where no domain could be meshed at that length.
     """
-    return mesh_domains(domains, edge_length, "resample", flips)
+    return mesh_domains(domains, edge_length, "resample", flips, smooth)
 
 
-def mesh_contour(points: ArrayLike, edge_length: float, *, flips: bool = False) -> Mesh:
+def mesh_contour(points: ArrayLike, edge_length: float, *, flips: bool = False, smooth: int = 0) -> Mesh:
     """Mesh one contour by the paper's scheme alone: 3 ≤ N_C ≤ 16, its vertices are the boundary, untouched.
 
-    points: (N_C, 2); flips: as in `mesh`. The mesh's first N_C vertices are the contour's, counter-clockwise. Raises
-    ContourError.
+    points: (N_C, 2); flips, smooth: as in `mesh`. The mesh's first N_C vertices are the contour's, counter-clockwise.
+    Raises ContourError.
     """
     edge_length = checked_edge_length(edge_length)
     contour = clean_loop(points)
@@ -81,6 +84,9 @@ def mesh_contour(points: ArrayLike, edge_length: float, *, flips: bool = False) 
     n_contour = np.array([n])
     meshes = mesh_contours(contour[None], n_contour, np.array([edge_length]), watch, flips)
     (vertices,) = join_vertices(contour[None], n_contour, meshes.inner, meshes.n_inner)
+    if smooth:
+        with watch("smoothing"):
+            vertices = move_downhill(vertices, meshes.triangles, smooth)
     warnings = ()
     if meshes.n_inner[0] < meshes.wanted[0]:
         warnings = (
@@ -107,7 +113,7 @@ def checked_edge_length(edge_length: float) -> float:
 
 
 def mesh_domains(
-    domains: Sequence[Sequence[ArrayLike]], edge_length: float, boundary: str, flips: bool
+    domains: Sequence[Sequence[ArrayLike]], edge_length: float, boundary: str, flips: bool, smooth: int
 ) -> list[Mesh | ContourError]:
     """Mesh many domains as one batch: a Mesh, or the ContourError that it has, for each."""
     if boundary not in ("resample", "keep"):
@@ -124,7 +130,7 @@ def mesh_domains(
         if boundary == "resample" and polygons:
             polygons = resample_loops(polygons, edge_length, domain)
     if polygons:
-        vertices, triangles, owner, fallbacks = _mesh_polygons(polygons, edge_length, flips, watch)
+        vertices, triangles, owner, fallbacks = _mesh_polygons(polygons, edge_length, flips, smooth, watch)
         of = domain[owner]
         fell = np.bincount(domain, fallbacks, minlength=len(results)).astype(int)
         for number, (part, elements) in zip(numbers, _parts(vertices, triangles, of, numbers), strict=True):
@@ -198,7 +204,7 @@ def lost_area_warnings(
 
 
 def _mesh_polygons(
-    polygons: list[np.ndarray], edge_length: float, flips: bool, watch: Stopwatch
+    polygons: list[np.ndarray], edge_length: float, flips: bool, smooth: int, watch: Stopwatch
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Mesh simple polygons: vertices (n, 2), triangles (m, 3), the polygon of each (m,), fallbacks of each polygon."""
     with watch("division"):
@@ -215,6 +221,9 @@ def _mesh_polygons(
     if flips:
         with watch("flips"):
             triangles = flip_edges(vertices, triangles)
+    if smooth:
+        with watch("smoothing"):
+            vertices = move_downhill(vertices, triangles, smooth, owner)
     return vertices, triangles, owner, counts
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from . import networks
 from .cavity import next_vertices
 from .edges import off_boundary
-from .stars import Stars, find_stars, independent_sets
+from .stars import Stars, find_stars, independent_sets, numbers_by_domain
 from .transform import superimpose
 
 LARGEST_STAR = 16
@@ -35,7 +35,7 @@ def relax(
     which there is something to relax; all, if not given.
     """
     stars = find_stars(triangles, off_boundary(triangles, len(vertices)), LARGEST_STAR)
-    number = _numbers_by_domain(triangles, domain, len(vertices))
+    number = numbers_by_domain(triangles, domain, len(vertices))
     sets = [stars.rows(rows) for rows in independent_sets(stars, number)]
     vertices = vertices.copy()
     if disturbed is None:
@@ -50,17 +50,6 @@ def relax(
                 vertices[stars.centre[better]], moved[stars.centre] = places[better], better
         disturbed = moved
     return vertices
-
-
-def _numbers_by_domain(triangles: np.ndarray, domain: np.ndarray, n_vertices: int) -> np.ndarray:
-    """(n,) place of each vertex among the vertices of its domain."""
-    of = np.full(n_vertices, -1)
-    of[triangles] = domain[:, None]
-    order = np.argsort(of, kind="stable")
-    first = np.searchsorted(of[order], of[order])
-    number = np.empty(n_vertices, dtype=np.int64)
-    number[order] = np.arange(n_vertices) - first
-    return number
 
 
 def _better_places(vertices: np.ndarray, stars: Stars) -> tuple[np.ndarray, np.ndarray]:

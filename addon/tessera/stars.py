@@ -70,3 +70,14 @@ def independent_sets(stars: Stars, number: np.ndarray) -> list[np.ndarray]:
         sets.append(np.flatnonzero(chosen))
         left &= ~chosen
     return sets
+
+
+def numbers_by_domain(triangles: np.ndarray, domain: np.ndarray, n_vertices: int) -> np.ndarray:
+    """(n,) place of each vertex among the vertices of its domain."""
+    of = np.full(n_vertices, -1)
+    of[triangles] = domain[:, None]
+    order = np.argsort(of, kind="stable")
+    first = np.searchsorted(of[order], of[order])
+    number = np.empty(n_vertices, dtype=np.int64)
+    number[order] = np.arange(n_vertices) - first
+    return number

@@ -1,0 +1,92 @@
+"""Smoothing after the networks, an option: inner vertices go downhill in the sum of q^-8 of the elements around them.
+
+The sum weighs poor elements most, so the worst ones get better, which the mean of the neighbours does not see to. A
+vertex tries a few steps along the slope and takes the best; vertices that move together are never neighbours, so no
+move can spoil another and elements stay valid.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .cavity import next_vertices
+from .edges import off_boundary
+from .stars import Stars, find_stars, independent_sets, numbers_by_domain
+
+_LARGEST_STAR = 32
+# Steps along the slope that are tried, in mean edge lengths of the star.
+_STEPS = np.array([0.2, 0.1, 0.05, 0.025, 0.0125])
+_POOR = 0.1  # quality below which the energy goes on linearly
+
+
+def smooth(vertices: np.ndarray, triangles: np.ndarray, steps: int, domain: np.ndarray | None = None) -> np.ndarray:
+    """Better places for the vertices of meshes that are off the boundary, (n, 2); the others stay.
+
+    vertices: (n, 2) float64; triangles: (m, 3) int, counter-clockwise; steps: how often every vertex may move; domain:
+    (m,) int, of a batch: what is done to one domain's mesh does not depend on the others. Raises ValueError for a
+    negative number of steps.
+    """
+    if steps < 0:
+        raise ValueError(f"smooth is how often every vertex may move, 0 or more, not {steps}")
+    if domain is None:
+        domain = np.zeros(len(triangles), dtype=np.int64)
+    stars = find_stars(triangles, off_boundary(triangles, len(vertices)), _LARGEST_STAR)
+    number = numbers_by_domain(triangles, domain, len(vertices))
+    sets = [stars.rows(rows) for rows in independent_sets(stars, number)]
+    vertices = vertices.copy()
+    for _ in range(steps):
+        for independent in sets:
+            vertices[independent.centre] = _downhill(vertices, independent)
+    return vertices
+
+
+def _downhill(vertices: np.ndarray, stars: Stars) -> np.ndarray:
+    """The best places (S, 2) that the stars' centres find along the slope, or the ones that they have.
+
+    A poor element never gets worse, so that none is turned over.
+    """
+    ring, centre = vertices[stars.ring], vertices[stars.centre]
+    real = np.arange(ring.shape[1]) < stars.n_ring[:, None]
+    following = next_vertices(ring, stars.n_ring)
+    away = np.linalg.norm(ring - centre[:, None], axis=2)
+    size = _total(np.where(real, away, 0)) / stars.n_ring
+    slope = _slope(ring, following, real, centre)
+    steepness = np.linalg.norm(slope, axis=1)
+    direction = -slope * (size / np.where(steepness > 0, steepness, 1))[:, None]
+    places = np.concatenate([centre[:, None], centre[:, None] + _STEPS[:, None] * direction[:, None]], axis=1)
+    quality = np.where(real[:, None], _quality(ring[:, None], following[:, None], places[:, :, None]), 1)
+    worst = quality.min(axis=2)
+    energy = np.where(worst >= np.minimum(worst[:, :1], _POOR), _total(_energy(quality) * real[:, None]), np.inf)
+    best = energy.argmin(axis=1)
+    return places[np.arange(len(places)), best]
+
+
+def _total(values: np.ndarray) -> np.ndarray:
+    """Sums over the last axis, one after the other, so that padding with zeros changes no last bit."""
+    return np.cumsum(values, axis=-1)[..., -1]
+
+
+def _quality(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """Element quality of triangles (..., 2), negative where inverted."""
+    u, v = a - c, b - c
+    squares = (u * u).sum(-1) + (v * v).sum(-1) + ((u - v) ** 2).sum(-1)
+    return 2 * np.sqrt(3) * (u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]) / np.maximum(squares, 1e-300)
+
+
+def _energy(quality: np.ndarray) -> np.ndarray:
+    """q^-8, continued as a straight line below `_POOR`."""
+    return np.maximum(quality, _POOR) ** -8.0 + 8 * _POOR**-9.0 * np.maximum(_POOR - quality, 0)
+
+
+def _slope(a: np.ndarray, b: np.ndarray, real: np.ndarray, centre: np.ndarray) -> np.ndarray:
+    """(S, 2) the derivative of each star's energy by its centre (S, 2). a, b: (S, R, 2) the far ends of elements."""
+    c = centre[:, None]
+    u, v = a - c, b - c
+    squares = ((u * u).sum(-1) + (v * v).sum(-1) + ((u - v) ** 2).sum(-1))[..., None]
+    squares = np.maximum(squares, 1e-300)
+    double = (u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])[..., None]
+    by_area = np.stack([a[..., 1] - b[..., 1], b[..., 0] - a[..., 0]], axis=-1)
+    by_squares = -2 * (u + v)
+    quality = 2 * np.sqrt(3) * double / squares
+    change = 2 * np.sqrt(3) * (by_area * squares - double * by_squares) / squares**2
+    return _total(np.swapaxes(-8 * np.maximum(quality, _POOR) ** -9.0 * change * real[..., None], 1, 2))
