@@ -1,4 +1,4 @@
-"""Random contours: the paper's sector contours, and those that division, refinement and relaxation really make."""
+"""The paper's sector contours, transformed as the scheme does, and what makes a contour good enough to learn from."""
 
 from __future__ import annotations
 
@@ -9,16 +9,13 @@ from tessera.transform import superimpose
 INNER_RADIUS = 0.3  # of the circle that sector contours stay out of
 LARGEST_CONTOUR = 16
 
-KINDS = ("sector", "cell", "star")
 
-
-def draw(rng: np.random.Generator, kind: str) -> tuple[np.ndarray, float]:
-    """One transformed contour of a kind, (N_C, 2) float64, counter-clockwise and simple, and its l_s."""
+def draw_sector(rng: np.random.Generator) -> tuple[np.ndarray, float]:
+    """One transformed sector contour, (N_C, 2) float64, counter-clockwise and simple, and its l_s."""
     while True:
-        points, edge_length = {"sector": sector, "cell": cell, "star": star}[kind](rng)
+        points, l_s = sector(rng)
         if is_good(points):
-            points, scale = transformed(points)
-            return points, edge_length if kind == "sector" else edge_length * scale
+            return transformed(points)[0], l_s
 
 
 def transformed_sector(rng: np.random.Generator, n: int) -> np.ndarray:
@@ -42,41 +39,6 @@ def sector(rng: np.random.Generator, n: int | None = None) -> tuple[np.ndarray, 
     angle = 2 * np.pi * (np.arange(n) + rng.random(n)) / n
     radius = np.sqrt(rng.uniform(INNER_RADIUS**2, 1, n))
     return radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1), float(rng.uniform(0.25, 1.1))
-
-
-def cell(rng: np.random.Generator) -> tuple[np.ndarray, float]:
-    """A polygon of few corners whose sides are divided evenly, straight or bent: a division's cell, a refined element.
-
-    Its target is the mean edge length, give or take a quarter.
-    """
-    while True:
-        corners, _ = sector(rng, int(rng.integers(3, 9)))
-        stretch = rng.uniform(0.4, 1)
-        corners = corners * [1, stretch]
-        sides = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1)
-        spacing = sides.sum() / rng.uniform(len(corners), LARGEST_CONTOUR)
-        counts = np.maximum(1, np.round(sides / spacing * rng.uniform(0.85, 1.15, len(sides)))).astype(int)
-        if counts.sum() <= LARGEST_CONTOUR:
-            break
-    parts = []
-    for start, end, count in zip(corners, np.roll(corners, -1, axis=0), counts, strict=True):
-        t = np.arange(count) / count
-        normal = np.array([start[1] - end[1], end[0] - start[0]])
-        bend = rng.normal(0, 0.08) * (rng.random() < 0.4)
-        parts.append(start + t[:, None] * (end - start) + (4 * bend * t * (1 - t))[:, None] * normal)
-    points = np.concatenate(parts)
-    edges = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
-    return points, float(edges.mean() * rng.uniform(0.75, 1.25))
-
-
-def star(rng: np.random.Generator) -> tuple[np.ndarray, float]:
-    """The ring of neighbours of one vertex of a mesh; its target is the mean edge length."""
-    n = int(rng.integers(4, 10))
-    angle = 2 * np.pi * (np.arange(n) + rng.uniform(-0.3, 0.3, n)) / n
-    radius = np.exp(rng.normal(0, 0.18, n))
-    points = radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1) * [1, rng.uniform(0.6, 1)]
-    edges = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
-    return points, float(max(edges.mean(), 0.8))
 
 
 def is_good(points: np.ndarray) -> bool:

@@ -11,6 +11,7 @@ from tessera.cavity import even_lengths, is_inside
 from tessera.transform import superimpose
 
 from . import configuration
+from .compact import unpack
 from .meshing import area2, delaunay, triangles
 from .tables import connection_table
 
@@ -19,15 +20,17 @@ MOST_PEELED = 32  # edges of the sub-contours that recursion makes
 
 @dataclass(frozen=True)
 class Examples:
-    """Padded float64 contours (n, N, 2) and inner vertices (n, M, 2), int64 counts (n,), l_s (n,), qualities (n, 2)."""
+    """Padded float64 contours (n, N, 2) and inner vertices (n, M, 2), int64 counts (n,), l_s (n,), kinds (n,).
+
+    placed: (n, M, 2) NN2's own placements of as many vertices, NaN where there is none, or None.
+    """
 
     contour: np.ndarray
     inner: np.ndarray
     n_contour: np.ndarray
     n_inner: np.ndarray
     l_s: np.ndarray
-    reference: np.ndarray
-    teacher: np.ndarray
+    kind: np.ndarray
     placed: np.ndarray | None = None
 
     def __getitem__(self, rows: np.ndarray) -> Examples:
@@ -38,22 +41,13 @@ class Examples:
         return len(self.l_s)
 
 
-def load(split: str, largest: int | None = None) -> Examples:
-    """All shards of a split (or the first ``largest`` ones), with NN2's own placements where they have been made."""
+def load(split: str) -> Examples:
+    """All examples of a split, with NN2's own placements where they have been made."""
     folder = configuration.ROOT / configuration.read()["data"]["folder"]
-    files = sorted((folder / split).glob("[0-9]*.npz"))[:largest]
-    if not files:
-        raise FileNotFoundError(f"no shards in {folder / split}: run 'python -m training.generate {split}' first")
-    shards = [np.load(file) for file in files]
-    arrays = {name: np.concatenate([shard[name] for shard in shards]) for name in shards[0].files if name != "kind"}
-    for name, array in arrays.items():
-        arrays[name] = array.astype(np.int64 if name.startswith("n_") else np.float64)
-    file, placed = folder / f"{split}_placed.npy", None
-    if file.exists():
-        placed = np.full(arrays["inner"].shape, np.nan)
-        found = np.load(file)[: len(placed)]
-        placed[: len(found)] = found
-    return Examples(**arrays, placed=placed)
+    arrays = unpack(folder / f"{split}.npz")
+    examples = Examples(**{name: arrays[name] for name in ("contour", "inner", "n_contour", "n_inner", "l_s", "kind")})
+    file = folder / f"{split}_placed.npy"
+    return replace(examples, placed=np.load(file).astype(np.float64)) if file.exists() else examples
 
 
 def reflect(examples: Examples, chosen: np.ndarray) -> Examples:

@@ -1,82 +1,92 @@
-"""Generate the data: ``python -m training.generate [train|validation] [--shards N] [--processes N]``.
+"""Generate the data: ``python -m training.generate train|validation [--sets ...] [--processes N]``.
 
-A shard is a file of contours, made from a seed of its own; a file that is there is not made again, and one that was
-being made when the run was killed was never given its name.
+A shard is a file of examples, made from a seed of its own; a file that is there is not made again, and one that was
+being made when the run was killed was never given its name. In the end ``manifest.json`` says what was made from what,
+and all shards are put into one file (`compact`), which is what training reads.
 """
 
 from __future__ import annotations
 
 import argparse
+import hashlib
+import json
 import multiprocessing
 import os
+import platform
+from collections.abc import Iterator
 from pathlib import Path
 
+import numba
 import numpy as np
 from tqdm import tqdm
 
-from . import configuration, contours, meshing, reference
+from . import configuration, contours, reference, running
+from .compact import pack
+from .measures import qualities
+from .teacher import Lesson, Meshed, centre, teach
+
+SETS = ("sector", "running")
+KINDS = ("sector", *running.KINDS)
 
 
-def solve(points: np.ndarray, l_s: float, sweeps: int) -> dict | None:
-    """Reference and teacher of one transformed contour, or None where the mesh has no use as an example.
-
-    Returns inner (N_I, 2), the teacher's vertices, and ``reference`` and ``teacher``, each (q_worst, q_mean).
-    """
-    n = len(points)
-    vertices, elements = reference.mesh(points, l_s)
-    if len(vertices) < n or not np.allclose(vertices[:n], points, atol=1e-9):
-        return None
-    total = len(vertices)
-    opposite = np.full((total, total), -1, dtype=np.int64)
-    for a, b, c in elements:
-        meshing.add(opposite, a, b, c)
-    before = meshing.qualities(vertices, opposite, total)
-    if before[0] <= 0:
-        return None
-    meshing.improve(vertices, opposite, n, total, sweeps)
-    return {
-        "inner": vertices[n:],
-        "reference": before,
-        "teacher": meshing.qualities(vertices, opposite, total),
-    }
+def drawn(rng: np.random.Generator, name: str, size: int) -> Iterator[tuple[np.ndarray, float, str]]:
+    """Transformed contours (N_C, 2) of a set without end, their l_s and kinds."""
+    while True:
+        if name == "sector":
+            yield *contours.draw_sector(rng), "sector"
+        else:
+            pool = running.pool(rng, size)
+            for row in rng.permutation(len(pool.l_s)):
+                yield pool.contour[row, : pool.n_contour[row]], pool.l_s[row], running.KINDS[pool.kind[row]]
 
 
-def make_shard(seed: tuple[int, ...], size: int, config: dict, kinds: list[str]) -> dict[str, np.ndarray]:
-    """Arrays of ``size`` examples: padded contours and inner vertices, their counts, l_s, kind, qualities."""
+def lesson_of(points: np.ndarray, l_s: float, kind: str, most: int) -> Lesson | None:
+    """What is learnt from a contour; a star keeps its one vertex, so its reference is the teacher's mesh."""
+    if kind != "star":
+        return teach(points, l_s, most)
+    mesh = centre(points)
+    return None if mesh is None else Lesson(mesh, mesh)
+
+
+def make_shard(seed: tuple[int, ...], name: str, size: int, most: int) -> dict[str, np.ndarray]:
+    """Arrays of ``size`` examples: padded contours and the teacher's inner vertices, counts, l_s, kinds, qualities."""
     rng = np.random.default_rng(seed)
     reference.start()
-    most = config["largest_inner"]
-    shares = np.array([config["shares"][kind] for kind in kinds])
     shard = {
         "contour": np.zeros((size, contours.LARGEST_CONTOUR, 2), np.float32),
         "inner": np.zeros((size, most, 2), np.float32),
         "n_contour": np.zeros(size, np.int8),
         "n_inner": np.zeros(size, np.int8),
+        "n_reference": np.zeros(size, np.int16),
         "l_s": np.zeros(size, np.float32),
         "kind": np.zeros(size, np.int8),
         "reference": np.zeros((size, 2), np.float32),
         "teacher": np.zeros((size, 2), np.float32),
     }
     row = 0
-    while row < size:
-        kind = int(rng.choice(len(kinds), p=shares / shares.sum()))
-        points, l_s = contours.draw(rng, kinds[kind])
-        solution = solve(points, l_s, config["sweeps"])
-        if solution is None or len(solution["inner"]) > most:
+    for points, l_s, kind in drawn(rng, name, size):
+        lesson = lesson_of(points, l_s, kind, most)
+        if lesson is None or len(lesson.taught.vertices) > len(points) + most:
             continue
-        n, m = len(points), len(solution["inner"])
+        n, inner = len(points), lesson.taught.vertices[len(points) :]
         shard["contour"][row, :n], shard["n_contour"][row] = points, n
-        shard["inner"][row, :m], shard["n_inner"][row] = solution["inner"], m
-        shard["l_s"][row], shard["kind"][row] = l_s, kind
-        shard["reference"][row], shard["teacher"][row] = solution["reference"], solution["teacher"]
+        shard["inner"][row, : len(inner)], shard["n_inner"][row] = inner, len(inner)
+        shard["n_reference"][row] = len(lesson.reference.vertices) - n
+        shard["l_s"][row], shard["kind"][row] = l_s, KINDS.index(kind)
+        shard["reference"][row], shard["teacher"][row] = _quality(lesson.reference), _quality(lesson.taught)
         row += 1
-    return shard
+        if row == size:
+            return shard
 
 
-def work(job: tuple[Path, tuple[int, ...], dict]) -> Path:
+def _quality(mesh: Meshed) -> tuple[float, float]:
+    return qualities(mesh.vertices, mesh.triangles)
+
+
+def work(job: tuple[Path, tuple[int, ...], str, dict]) -> Path:
     """Make one shard's file, under another name until it is whole."""
-    path, seed, config = job
-    shard = make_shard(seed, config["shard"], config, list(contours.KINDS))
+    path, seed, name, config = job
+    shard = make_shard(seed, name, config["shard"], config["largest_inner"])
     unfinished = path.with_suffix(f".{os.getpid()}.part")
     with open(unfinished, "wb") as file:
         np.savez(file, **shard)
@@ -84,23 +94,51 @@ def work(job: tuple[Path, tuple[int, ...], dict]) -> Path:
     return path
 
 
+def write_manifest(folder: Path, split: str, config: dict) -> None:
+    """What is in a folder of shards, and what it was made from."""
+    shards = {}
+    for file in sorted(folder.glob("*-*.npz")):
+        shard = np.load(file)
+        counts = np.bincount(shard["kind"], minlength=len(KINDS)).tolist()
+        digest = hashlib.sha256(file.read_bytes()).hexdigest()
+        shards[file.name] = {"examples": sum(counts), "kinds": dict(zip(KINDS, counts, strict=True)), "sha256": digest}
+    manifest = {
+        "split": split,
+        "examples": sum(shard["examples"] for shard in shards.values()),
+        "kinds": {kind: sum(shard["kinds"][kind] for shard in shards.values()) for kind in KINDS},
+        "seed": config["seeds"][split],
+        "configuration": config,
+        "reference": {"gmsh": reference.VERSION, "options": reference.OPTIONS},
+        "versions": {"python": platform.python_version(), "numpy": np.__version__, "numba": numba.__version__},
+        "shards": shards,
+    }
+    unfinished = folder / "manifest.part"
+    unfinished.write_text(json.dumps(manifest, indent=1))
+    unfinished.rename(folder / "manifest.json")
+
+
 def main() -> None:
     """Make the shards that are missing."""
     config = configuration.read()["data"]
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("split", nargs="?", default="train", choices=["train", "validation"])
-    parser.add_argument("--shards", type=int, help="how many (default: the configuration's)")
+    parser.add_argument("split", choices=["train", "validation"])
+    parser.add_argument("--sets", nargs="+", choices=SETS, default=SETS)
     parser.add_argument("--processes", type=int, default=os.cpu_count())
     arguments = parser.parse_args()
     folder = configuration.ROOT / config["folder"] / arguments.split
     folder.mkdir(parents=True, exist_ok=True)
     seed = config["seeds"][arguments.split]
-    count = arguments.shards or config["shards"][arguments.split]
-    jobs = [(folder / f"{i:05d}.npz", (seed, i), config) for i in range(count)]
+    jobs = [
+        (folder / f"{name}-{number:05d}.npz", (seed, SETS.index(name), number), name, config)
+        for name in arguments.sets
+        for number in range(config["shards"][arguments.split][name])
+    ]
     jobs = [job for job in jobs if not job[0].exists()]
     with multiprocessing.get_context("spawn").Pool(arguments.processes) as pool:
         for _ in tqdm(pool.imap_unordered(work, jobs), total=len(jobs), unit="shard"):
             pass
+    write_manifest(folder, arguments.split, config)
+    pack(folder, folder.with_suffix(".npz"))
 
 
 if __name__ == "__main__":

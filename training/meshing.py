@@ -228,7 +228,7 @@ def force_edge(points, opposite, n, a, b):
 def energy(q):
     """q^-4, continued linearly below 0.1 so that inverted elements can be mended."""
     if q > 0.1:
-        return q**-4.0
+        return 1 / (q * q * q * q)
     return 1e4 + 4e5 * (0.1 - q)
 
 
@@ -257,7 +257,7 @@ def move(points, opposite, n, v, step):
             squares += (points[u, 0] - points[w, 0]) ** 2 + (points[u, 1] - points[w, 1]) ** 2
         double = area2(points, v, a, b)
         q = 2 * np.sqrt(3.0) * double / squares
-        slope = -4 * q**-5.0 if q > 0.1 else -4e5
+        slope = -4 / (q * q * q * q * q) if q > 0.1 else -4e5
         for axis in range(2):
             d_area = points[a, 1] - points[b, 1] if axis == 0 else points[b, 0] - points[a, 0]
             d_squares = 2 * (2 * points[v, axis] - points[a, axis] - points[b, axis])
