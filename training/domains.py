@@ -11,6 +11,7 @@ from tessera import ContourError, boundary
 from tessera.contour import clean_domains
 
 TRIANGLES = 50, 600  # that random domains are to have, about
+_KEPT = 0.3  # share of random domains that keep the boundary they have
 _FONTS = "DejaVuSans.ttf", "DejaVuSerif.ttf", "DejaVuSansMono-Bold.ttf", "STIXGeneralItalic.ttf", "cmr10.ttf"
 _GLYPHS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789?!&%$#*+"
 _NACA = "0006", "0012", "0021", "1408", "2412", "2424", "4412", "6409", "8315"
@@ -25,7 +26,7 @@ class Domain:
 
 
 def random_domains(rng: np.random.Generator, count: int) -> list[Domain]:
-    """Random domains without holes; one in three keeps its own boundary, mostly several times as coarse as the target.
+    """Random domains without holes; some keep their own boundary, mostly several times as coarse as the target.
 
     A few whose coarse boundary crosses itself are left to the library to refuse.
     """
@@ -52,14 +53,15 @@ def _random_domain(rng: np.random.Generator) -> Domain:
             break
     turn = rng.uniform(0, 2 * np.pi)
     shape = shape @ np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
-    loop = _scaled(shape, np.exp(rng.uniform(*np.log(TRIANGLES))))
-    keep = rng.random() < 1 / 3
-    if keep:
-        coarse = rng.uniform(2, 5) if rng.random() < 0.7 else 1.0
-        loop = boundary.resample(loop, coarse)
-        if rng.random() < 0.5:  # uneven, as by hand
-            loop = loop + 0.15 * coarse * rng.uniform(-1, 1, loop.shape)
-    return Domain(loop, keep)
+    wanted = np.exp(rng.uniform(*np.log(TRIANGLES)))
+    if rng.random() > _KEPT:
+        return Domain(_scaled(shape, wanted), keep=False)
+    # Beside long edges elements are long, so that there must be room for more of them.
+    coarse, wanted = (rng.uniform(2, 5), 2 * wanted) if rng.random() < 0.7 else (1.0, wanted)
+    loop = boundary.resample(_scaled(shape, wanted), coarse)
+    if rng.random() < 0.5:  # uneven, as by hand
+        loop = loop + 0.15 * coarse * rng.uniform(-1, 1, loop.shape)
+    return Domain(loop, keep=True)
 
 
 def _scaled(shape: np.ndarray, triangles: float) -> np.ndarray:
@@ -122,7 +124,7 @@ def _rounded_rectangle(rng: np.random.Generator) -> np.ndarray:
     if rng.random() < 0.2:
         return np.array([[0, 0], [1, 0], [1, height], [0, height]])
     quarter = np.linspace(0, np.pi / 2, 12)
-    centres = np.array([[1, height], [0, height], [0, 0], [1, 0]]) * [1, 1]
+    centres = np.array([[1, height], [0, height], [0, 0], [1, 0]])
     inward = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * radius
     corners = [
         centre + shift + radius * np.stack([np.cos(quarter + k * np.pi / 2), np.sin(quarter + k * np.pi / 2)], axis=1)

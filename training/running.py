@@ -1,90 +1,41 @@
-"""Contours that the running system makes: random and real domains are meshed, and what the networks are given is kept.
+"""Pools of the contours that the running system makes, for training, and of others like them, for evaluation.
 
 Four kinds go through the scheme or through relaxation: *cells* of the division, *triangles* that refinement gave up to
 five segments an edge (so with collinear vertices), *cavities* that are meshed again, and *stars*, the rings around a
 vertex. The triangulation's recursion makes *sub-contours* of them, which only NN3 sees.
 
-`python -m training.running 200` prints how many of each kind so many random domains make.
+`python -m training.running 500` prints how many of each kind so many random domains make.
 """
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, field, fields
+from collections.abc import Iterator
 
 import numpy as np
 
-from tessera import meshing, refinement, relaxation, remeshing, triangulation
-from tessera.cavity import next_vertices
-from tessera.transform import superimpose
-
 from .domains import Domain, random_domains, real_domains
+from .recording import KINDS, LARGEST_CONTOUR, Pool, SubContours, contours_of, join, record, rows_of, sub_contours_of
 
-KINDS = ("cell", "triangle", "cavity", "star")
-LARGEST_CONTOUR = 16
-LARGEST_SUB_CONTOUR = 32  # edges, and as many inner vertices: there are larger ones, but they are one in thousands
 _BATCH = 24  # domains that are meshed together
-_CLEAR = 0.02  # least length of an edge and distance of a vertex from other edges, in mean edge lengths
-
-
-@dataclass(frozen=True)
-class Pool:
-    """Transformed contours, padded with 0: they are simple, counter-clockwise and begin at their farthest vertex.
-
-    contour: (n, 16, 2) float64; n_contour: (n,) int64; l_s: (n,) float64, the transformed target edge length, for a
-    star the mean edge length; kind: (n,) int8, indices into KINDS.
-    """
-
-    contour: np.ndarray
-    n_contour: np.ndarray
-    l_s: np.ndarray
-    kind: np.ndarray
-
-    def __len__(self) -> int:
-        return len(self.n_contour)
-
-
-@dataclass(frozen=True)
-class SubContours:
-    """Transformed sub-contours, simple and counter-clockwise, with inner vertices, as `tables` and NN3 see them.
-
-    points: (n, V, 2) float64, contour vertices and right after them inner vertices, padded with 0; n_contour, n_inner:
-    (n,) int64, both at most 32.
-    """
-
-    points: np.ndarray
-    n_contour: np.ndarray
-    n_inner: np.ndarray
-
-    def __len__(self) -> int:
-        return len(self.n_contour)
-
-
-@dataclass(frozen=True)
-class Record:
-    """What the library was seen to work on: batches of padded contours as they were, in the domains' coordinates."""
-
-    contours: list[Pool] = field(default_factory=list)
-    sub_contours: list[SubContours] = field(default_factory=list)
 
 
 def pool(rng: np.random.Generator, size: int) -> Pool:
     """At least ``size`` contours of random domains, shuffled, so that any part of them has the same shares.
 
-    Kinds come in the shares in which they occur, but for stars, which are twenty times as many as all others: only so
-    many are left, drawn at random, as are a third of the others. What a domain makes several times (the teeth of a
+    Kinds come in the shares in which they occur, but for stars, which are over twenty times as many as all others: only
+    so many are left, drawn at random, as are a third of the others. What a domain makes several times (the teeth of a
     gear, a cavity that is tried again) is there once.
     """
     parts, count = [], 0
     while count < size:
         found = contours_of(record(random_domains(rng, _BATCH)))
         star = found.kind == KINDS.index("star")
-        chosen = rng.permutation(np.flatnonzero(star))[: np.count_nonzero(~star) // 3]
-        parts.append(_once(_rows(found, np.concatenate([np.flatnonzero(~star), chosen]))))
+        others = _once(rows_of(found, ~star))
+        chosen = rng.permutation(np.flatnonzero(star))[: len(others) // 3]
+        parts.append(join([others, _once(rows_of(found, chosen))]))
         count += len(parts[-1])
-    return _rows(_join(parts), rng.permutation(count))
+    return rows_of(join(parts), rng.permutation(count))
 
 
 def sub_contour_pool(rng: np.random.Generator, size: int) -> SubContours:
@@ -93,13 +44,13 @@ def sub_contour_pool(rng: np.random.Generator, size: int) -> SubContours:
     while count < size:
         parts.append(sub_contours_of(record(random_domains(rng, _BATCH))))
         count += len(parts[-1])
-    return _rows(_join(parts), rng.permutation(count))
+    return rows_of(join(parts), rng.permutation(count))
 
 
 def refinement_contours(seed: int, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Cells, triangles and cavities of random domains, for evaluation: contours (count, 16, 2), n_contour, l_s."""
     rng = np.random.default_rng(seed)
-    return _through_the_scheme(lambda: random_domains(rng, _BATCH), count)
+    return _through_the_scheme(iter(lambda: random_domains(rng, _BATCH), None), count)
 
 
 def real_contours(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -109,179 +60,62 @@ def real_contours(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """
     domains = real_domains()
     order = np.random.default_rng(0).permutation(len(domains))
-    batches = ([domains[number] for number in order[first : first + _BATCH]] for first in range(0, len(order), _BATCH))
-    return _through_the_scheme(lambda: next(batches, None), count)
+    batches = np.array_split(order, len(order) // _BATCH)
+    return _through_the_scheme(([domains[number] for number in batch] for batch in batches), count)
 
 
-def _through_the_scheme(draw: Callable[[], list[Domain] | None], count: int) -> tuple[np.ndarray, ...]:
+def _through_the_scheme(batches: Iterator[list[Domain]], count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     parts, found = [], 0
     while found < count:
-        domains = draw()
+        domains = next(batches, None)
         if domains is None:
-            raise ValueError(f"all real domains together make {found} contours, {count} were asked for")
+            raise ValueError(f"all domains together make {found} contours, {count} were asked for")
         contours = contours_of(record(domains))
-        parts.append(_once(_rows(contours, contours.kind != KINDS.index("star"))))
+        parts.append(_once(rows_of(contours, contours.kind != KINDS.index("star"))))
         found += len(parts[-1])
-    joined = _join(parts)
+    joined = join(parts)
     return joined.contour[:count], joined.n_contour[:count], joined.l_s[:count]
-
-
-def record(domains: Sequence[Domain]) -> Record:
-    """Mesh domains and keep what the library works on; those that it refuses leave nothing."""
-    with recording() as found:
-        for keep in (False, True):
-            loops = _apart([domain.loop for domain in domains if domain.keep == keep])
-            meshing.mesh_domains(loops, 1.0, "keep" if keep else "resample", flips=False, smooth=0)
-    return found
-
-
-def _apart(loops: list[np.ndarray]) -> list[list[np.ndarray]]:
-    """Domains of a loop each, side by side: long edges of a batch's boundary make the mesh beside them coarser."""
-    width = np.array([np.ptp(loop, axis=0).max() for loop in loops])
-    place = 8 * (np.cumsum(width) - width / 2)
-    return [[loop - loop.mean(axis=0) + [x, 0]] for loop, x in zip(loops, place, strict=True)]
-
-
-@contextmanager
-def recording() -> Iterator[Record]:
-    """While it lasts, the library's modules call through wrappers that keep what goes through; then all is as it was."""
-    found = Record()
-    wrappers = [
-        (meshing, "mesh_cells", lambda call: _recorded_cells(call, "cell", found)),
-        (refinement, "mesh_cells", lambda call: _recorded_cells(call, "triangle", found)),
-        (remeshing, "mesh_cells", lambda call: _recorded_cells(call, "cavity", found)),
-        (relaxation, "_better_places", lambda call: _recorded_stars(call, found)),
-        (triangulation, "_triangulate", lambda call: _recorded_levels(call, found)),
-    ]
-    originals = [getattr(module, name) for module, name, _ in wrappers]
-    try:
-        for (module, name, wrapper), original in zip(wrappers, originals, strict=True):
-            setattr(module, name, wrapper(original))
-        yield found
-    finally:
-        for (module, name, _), original in zip(wrappers, originals, strict=True):
-            setattr(module, name, original)
-
-
-def _recorded_cells(call: Callable, kind: str, found: Record) -> Callable:
-    def mesh_cells(points, cells, edge_length, watch):
-        contour, n = _padded(points[cells]), (cells >= 0).sum(axis=1)
-        found.contours.append(Pool(contour, n, edge_length, np.full(len(n), KINDS.index(kind), dtype=np.int8)))
-        return call(points, cells, edge_length, watch)
-
-    return mesh_cells
-
-
-def _recorded_stars(call: Callable, found: Record) -> Callable:
-    def better_places(vertices, stars):
-        ring = vertices[stars.ring]
-        real = np.arange(ring.shape[1]) < stars.n_ring[:, None]
-        lengths = np.linalg.norm(next_vertices(ring, stars.n_ring) - ring, axis=-1)
-        mean = np.where(real, lengths, 0).sum(axis=1) / stars.n_ring
-        kind = np.full(len(mean), KINDS.index("star"), dtype=np.int8)
-        found.contours.append(Pool(_padded(ring), stars.n_ring, mean, kind))
-        return call(vertices, stars)
-
-    return better_places
-
-
-def _recorded_levels(call: Callable, found: Record) -> Callable:
-    def triangulate(points, n_contour, n_inner, number, connect):
-        levels = []
-
-        def recorded_connect(*level):
-            levels.append(SubContours(*level[:3]))
-            return connect(*level)
-
-        result = call(points, n_contour, n_inner, number, recorded_connect)
-        found.sub_contours.extend(levels[1:])  # level 0 is the contours themselves
-        return result
-
-    return triangulate
-
-
-def contours_of(found: Record) -> Pool:
-    """The contours of a record that are fit for examples, transformed, in the order in which they were meshed."""
-    raw = _join(found.contours)
-    contour, scale = _transformed(raw.contour, raw.n_contour, raw.n_contour)
-    return _rows(Pool(contour, raw.n_contour, raw.l_s * scale, raw.kind), is_fit(contour, raw.n_contour))
-
-
-def sub_contours_of(found: Record) -> SubContours:
-    """The sub-contours of a record that are fit for examples, transformed."""
-    parts = []
-    for raw in found.sub_contours:
-        raw = _rows(raw, (raw.n_contour <= LARGEST_SUB_CONTOUR) & (raw.n_inner <= LARGEST_SUB_CONTOUR))
-        points, _ = _transformed(raw.points, raw.n_contour, raw.n_contour + raw.n_inner)
-        contour = points[:, : raw.n_contour.max(initial=3)]
-        parts.append(_rows(SubContours(points, raw.n_contour, raw.n_inner), is_fit(contour, raw.n_contour)))
-    return _join(parts)
-
-
-def _transformed(points: np.ndarray, n_contour: np.ndarray, n_points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points (B, V, 2) superimposed by their first n_contour, which are turned to begin at `first`; and the scales."""
-    transformation = superimpose(points, n_contour)
-    index = np.broadcast_to(np.arange(points.shape[1]), points.shape[:2])
-    turned = (index + transformation.first[:, None]) % n_contour[:, None]
-    turned = np.where(index < n_contour[:, None], turned, index)
-    points = np.take_along_axis(transformation.apply(points), turned[..., None], axis=1)
-    return np.where((index < n_points[:, None])[..., None], points, 0), transformation.scale
-
-
-def is_fit(contour: np.ndarray, n_contour: np.ndarray) -> np.ndarray:
-    """(B,) whether padded contours are simple, counter-clockwise and not hopelessly thin; straight angles are welcome."""
-    fit = np.zeros(len(n_contour), dtype=bool)
-    for n in np.unique(n_contour):
-        rows = np.flatnonzero(n_contour == n)
-        for part in np.array_split(rows, 1 + len(rows) * int(n) ** 2 // (1 << 20)):
-            fit[part] = _is_fit(contour[part, :n])
-    return fit
-
-
-def _is_fit(contour: np.ndarray) -> np.ndarray:
-    """`is_fit` for contours (B, N, 2) without padding."""
-    n = contour.shape[1]
-    ahead = np.roll(contour, -1, axis=1)
-    edge = ahead - contour
-    length = np.linalg.norm(edge, axis=-1)
-    mean = length.mean(axis=1)
-    # Of the start of edge j from edge i, in units of edge i and across it.
-    offset = contour[:, None] - contour[:, :, None]
-    along = (offset * edge[:, :, None]).sum(-1) / (length**2)[..., None]
-    side = edge[:, :, None, 0] * offset[..., 1] - edge[:, :, None, 1] * offset[..., 0]
-    away = np.linalg.norm(offset - np.clip(along, 0, 1)[..., None] * edge[:, :, None], axis=-1)
-    away[:, np.arange(n), np.arange(n)] = np.inf
-    away[:, np.arange(n), (np.arange(n) + 1) % n] = np.inf
-    # Straight angles have sides that are 0 but for rounding; what touches is too near.
-    sign = np.sign(np.where(np.abs(side) < 1e-9, 0, side))
-    passes = sign * np.roll(sign, -1, axis=2) < 0
-    area = 0.5 * (contour[..., 0] * ahead[..., 1] - contour[..., 1] * ahead[..., 0]).sum(axis=1)
-    return (
-        (area > 0.02 * length.sum(axis=1) ** 2 / 12)
-        & (np.minimum(length, away.min(axis=2)).min(axis=1) > _CLEAR * mean)
-        & ~(passes & passes.transpose(0, 2, 1)).any(axis=(1, 2))
-    )
-
-
-def _padded(points: np.ndarray) -> np.ndarray:
-    """(B, N, 2) as (B, 16, 2)."""
-    return np.pad(points[:, :LARGEST_CONTOUR], ((0, 0), (0, max(0, LARGEST_CONTOUR - points.shape[1])), (0, 0)))
 
 
 def _once(contours: Pool) -> Pool:
     """The contours without repetitions, to six digits."""
     digits = np.round(contours.contour, 6) + 0.0  # no -0
     _, first = np.unique(digits.reshape(len(digits), -1), axis=0, return_index=True)
-    return _rows(contours, np.sort(first))
+    return rows_of(contours, np.sort(first))
 
 
-def _rows(arrays: Pool | SubContours, rows: np.ndarray) -> Pool | SubContours:
-    return type(arrays)(*(getattr(arrays, f.name)[rows] for f in fields(arrays)))
+def shares(rng: np.random.Generator, count: int) -> str:
+    """Of what so many random domains make: how many of each kind, and their numbers of edges, as a Markdown table."""
+    contours, sub_contours = [], []
+    for first in range(0, count, _BATCH):
+        found = record(random_domains(rng, min(_BATCH, count - first)))
+        contours.append(contours_of(found))
+        sub_contours.append(sub_contours_of(found).n_contour)
+    contours = join(contours)
+    once = [np.count_nonzero(_once(rows_of(contours, contours.kind == k)).kind == k) for k in range(len(KINDS))]
+    edges = [contours.n_contour[contours.kind == k] for k in range(len(KINDS))]
+    star = KINDS.index("star")
+    others = sum(len(n) for n in edges) - len(edges[star])
+    lines = [
+        "| kind | contours | different | of all but stars | "
+        + " | ".join(f"{n} edges" for n in range(3, LARGEST_CONTOUR + 1))
+        + " | more |",
+        "| --- |" + " --- |" * (LARGEST_CONTOUR + 2),
+    ]
+    rows = [
+        (kind, n, str(different), f"{100 * len(n) / others:.0f} %" if kind != "star" else "")
+        for kind, n, different in zip(KINDS, edges, once, strict=True)
+    ]
+    for kind, n, different, share in rows + [("sub-contour", np.concatenate(sub_contours), "", "")]:
+        histogram = np.bincount(np.minimum(n, LARGEST_CONTOUR + 1), minlength=LARGEST_CONTOUR + 2)[3:]
+        cells = [kind, str(len(n)), different, share] + [f"{100 * k / len(n):.0f} %" for k in histogram]
+        lines.append("| " + " | ".join(cells) + " |")
+    return "\n".join(lines)
 
 
-def _join(parts: Sequence[Pool | SubContours]) -> Pool | SubContours:
-    """One of several, padded to the widest."""
-    columns = [[getattr(part, f.name) for part in parts] for f in fields(parts[0])]
-    width = max(points.shape[1] for points in columns[0])
-    columns[0] = [np.pad(points, ((0, 0), (0, width - points.shape[1]), (0, 0))) for points in columns[0]]
-    return type(parts[0])(*map(np.concatenate, columns))
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("domains", type=int, nargs="?", default=500)
+    parser.add_argument("--seed", type=int, default=1)
+    arguments = parser.parse_args()
+    print(shares(np.random.default_rng(arguments.seed), arguments.domains))
