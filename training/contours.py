@@ -8,6 +8,8 @@ from tessera.transform import superimpose
 
 INNER_RADIUS = 0.3  # of the circle that sector contours stay out of
 LARGEST_CONTOUR = 16
+# Sorts of contours in the data: these here, and those that the running system makes (`running.py`).
+KINDS = ("sector", "cell", "triangle", "cavity", "star")
 
 
 def draw_sector(rng: np.random.Generator) -> tuple[np.ndarray, float]:

@@ -2,27 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import njit
 
 from tessera.cavity import even_lengths, is_inside
+from tessera.scheme import connect, join_vertices
+from tessera.stopwatch import Stopwatch
 from tessera.transform import superimpose
+from tessera.triangulation import triangulate
 
 from . import configuration
 from .compact import unpack
 from .meshing import area2, delaunay, triangles
 from .tables import connection_table
 
-MOST_PEELED = 32  # edges of the sub-contours that recursion makes
-
 
 @dataclass(frozen=True)
 class Examples:
     """Padded float64 contours (n, N, 2) and inner vertices (n, M, 2), int64 counts (n,), l_s (n,), kinds (n,).
 
-    placed: (n, M, 2) NN2's own placements of as many vertices, NaN where there is none, or None.
+    placed: (n, P, 2) NN2's own placements of n_placed (n,) vertices, 0 of them where there is none.
     """
 
     contour: np.ndarray
@@ -31,11 +33,11 @@ class Examples:
     n_inner: np.ndarray
     l_s: np.ndarray
     kind: np.ndarray
-    placed: np.ndarray | None = None
+    placed: np.ndarray
+    n_placed: np.ndarray
 
     def __getitem__(self, rows: np.ndarray) -> Examples:
-        values = {name: getattr(self, name) for name in self.__dataclass_fields__}
-        return Examples(**{name: None if value is None else value[rows] for name, value in values.items()})
+        return Examples(**{name: getattr(self, name)[rows] for name in self.__dataclass_fields__})
 
     def __len__(self) -> int:
         return len(self.l_s)
@@ -45,9 +47,13 @@ def load(split: str) -> Examples:
     """All examples of a split, with NN2's own placements where they have been made."""
     folder = configuration.ROOT / configuration.read()["data"]["folder"]
     arrays = unpack(folder / f"{split}.npz")
-    examples = Examples(**{name: arrays[name] for name in ("contour", "inner", "n_contour", "n_inner", "l_s", "kind")})
-    file = folder / f"{split}_placed.npy"
-    return replace(examples, placed=np.load(file).astype(np.float64)) if file.exists() else examples
+    arrays = {name: arrays[name] for name in ("contour", "inner", "n_contour", "n_inner", "l_s", "kind")}
+    file = folder / f"{split}_placed.npz"
+    if file.exists():
+        with np.load(file) as placed:
+            return Examples(**arrays, placed=placed["placed"].astype(np.float64), n_placed=placed["n_placed"])
+    count = len(arrays["l_s"])
+    return Examples(**arrays, placed=np.zeros((count, 1, 2)), n_placed=np.zeros(count, dtype=np.int64))
 
 
 def reflect(examples: Examples, chosen: np.ndarray) -> Examples:
@@ -57,8 +63,7 @@ def reflect(examples: Examples, chosen: np.ndarray) -> Examples:
     order = np.where((index < count) & chosen[:, None], (count - index) % count, index)
     contour = np.take_along_axis(examples.contour, order[..., None], axis=1)
     sign = np.where(chosen, -1.0, 1.0)[:, None, None] * [0, 1] + [1, 0]
-    placed = None if examples.placed is None else examples.placed * sign
-    return replace(examples, contour=contour * sign, inner=examples.inner * sign, placed=placed)
+    return replace(examples, contour=contour * sign, inner=examples.inner * sign, placed=examples.placed * sign)
 
 
 def by_size(examples: Examples) -> list[np.ndarray]:
@@ -69,9 +74,10 @@ def by_size(examples: Examples) -> list[np.ndarray]:
 
 def trim(examples: Examples) -> Examples:
     """The same examples with no more padding than their largest needs."""
-    n, m = int(examples.n_contour.max()), max(1, int(examples.n_inner.max()))
-    placed = None if examples.placed is None else examples.placed[:, :m]
-    return replace(examples, contour=examples.contour[:, :n], inner=examples.inner[:, :m], placed=placed)
+    n, m, p = (max(1, int(count.max())) for count in (examples.n_contour, examples.n_inner, examples.n_placed))
+    return replace(
+        examples, contour=examples.contour[:, :n], inner=examples.inner[:, :m], placed=examples.placed[:, :p]
+    )
 
 
 def score_batch(
@@ -158,99 +164,72 @@ def elements_of(contour, inner, n_contour, n_inner, out, ok):
 
 
 def move_batch(rng: np.random.Generator, examples: Examples) -> tuple[np.ndarray, np.ndarray]:
-    """Inner vertices to be moved, (n, M, 2): the teacher's, disturbed, or NN2's own; and which examples fit, (n,)."""
-    even = even_lengths(examples.contour, examples.n_contour, examples.n_inner)
-    sigma = rng.uniform(0.02, 0.4, len(examples))
-    noise = rng.normal(size=examples.inner.shape) * (sigma * even)[:, None, None]
-    start = examples.inner.copy()
-    if examples.placed is not None:
-        own = (rng.random(len(examples)) < 0.6) & np.isfinite(examples.placed).all((1, 2))
-        start[own] = examples.placed[own]
-        noise[own] *= 0.25
-    fits = np.zeros(len(examples), bool)
-    for row in range(len(examples)):
-        nc, ni = examples.n_contour[row], examples.n_inner[row]
-        points, fits[row] = jitter(examples.contour[row], start[row], nc, ni, noise[row], even[row])
-        start[row, :ni] = points[nc:]
-    return start, fits & (examples.n_inner > 0)
+    """Inner vertices to be moved, (n, M, 2), and how many, (n,): NN2's own placements, or the teacher's, disturbed.
 
-
-@njit(cache=True)
-def peel(opposite, n_contour, n, draws):
-    """Take elements off the contour, one a draw, and return the walk around what is left: a sub-contour of recursion.
-
-    Only elements whose third vertex is an inner one, or that cut off one contour vertex, are taken.
+    0 of them where they do not fit.
     """
-    walk = np.empty(2 * n, np.int64)
-    for i in range(n_contour):
-        walk[i] = i
-    size = n_contour
-    on_walk = np.zeros(n, np.bool_)
-    on_walk[:n_contour] = True
-    for draw in draws:
-        i = int(draw * size)
-        a, b = walk[i], walk[(i + 1) % size]
-        c = opposite[a, b]
-        if not on_walk[c]:
-            if size >= MOST_PEELED:
-                continue
-            for k in range(size, i + 1, -1):
-                walk[k] = walk[k - 1]
-            walk[i + 1] = c
-            size += 1
-            on_walk[c] = True
-        elif c == walk[(i + 2) % size] and size > 4:
-            on_walk[b] = False
-            at = (i + 1) % size
-            for k in range(at, size - 1):
-                walk[k] = walk[k + 1]
-            size -= 1
-    return walk[:size].copy()
+    own = (rng.random(len(examples)) < 0.6) & (examples.n_placed > 0)
+    n_inner = np.where(own, examples.n_placed, examples.n_inner)
+    start = np.zeros((len(examples), max(1, int(n_inner.max())), 2))
+    for chosen, places in ((own, examples.placed), (~own, examples.inner)):
+        m = min(places.shape[1], start.shape[1])
+        start[chosen, :m] = places[chosen, :m]
+    even = even_lengths(examples.contour, examples.n_contour, n_inner)
+    sigma = rng.uniform(0.02, 0.4, len(examples)) * np.where(own, 0.25, 1)
+    noise = rng.normal(size=start.shape) * (sigma * even)[:, None, None]
+    for row in range(len(examples)):
+        nc, ni = examples.n_contour[row], n_inner[row]
+        points, fits = jitter(examples.contour[row], start[row], nc, ni, noise[row], even[row])
+        start[row, :ni] = points[nc:]
+        n_inner[row] *= fits
+    return start, n_inner
 
 
-def sub_contour(rng: np.random.Generator, points: np.ndarray, n_contour: int) -> tuple[np.ndarray, int]:
-    """A random sub-contour of an example's recursion, transformed: points (n, 2), contour first, and its N_C."""
-    n = len(points)
-    opposite = np.empty((n, n), np.int64)
-    if not delaunay(points, n_contour, n, opposite):
-        return points, n_contour
-    walk = peel(opposite, n_contour, n, rng.random(int(rng.integers(1, n_contour + 3))))
-    rest = np.setdiff1d(np.arange(n_contour, n), walk)
-    contour, inner = points[walk], points[rest]
-    transformation = superimpose(contour[None], np.array([len(contour)]))
-    contour = np.roll(transformation.apply(contour[None])[0], -int(transformation.first[0]), axis=0)
-    inner = transformation.apply(inner[None])[0]
-    return np.concatenate([contour, inner]), len(walk)
+def levels(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray) -> Iterator[tuple[np.ndarray, int]]:
+    """The contours of every level of the triangulation's recursion, by the shipped NN3, each alone and transformed.
+
+    points: (B, V, 2), as `triangulate` takes them. Yields points (n, 2), the contour's first, and N_C.
+    """
+    asked = []
+
+    def ask(*level: np.ndarray) -> np.ndarray:
+        asked.append(level[:3])
+        return connect(*level, Stopwatch())
+
+    triangulate(points, n_contour, n_inner, ask)
+    for vertices, edges, inner in asked:
+        transformed = superimpose(vertices[:, : edges.max()], edges).apply(vertices)
+        for row, (nc, ni) in enumerate(zip(edges.tolist(), inner.tolist(), strict=True)):
+            yield transformed[row, : nc + ni], nc
 
 
 def table_batch(rng: np.random.Generator, examples: Examples) -> dict[str, np.ndarray]:
-    """Contours, inner vertices and their calculated connection tables, sub-contours of the recursion among them.
+    """Contours, inner vertices and their calculated connection tables, for the examples and as many sub-contours.
 
     ``table`` is (n, N, N + M, 2) with the padded N and M of ``contour`` and ``inner``; 0 where no element is possible.
     """
-    inner, fits = move_batch(rng, examples)
+    inner, n_inner = move_batch(rng, examples)
+    fits = (n_inner > 0) | (examples.n_inner == 0)
+    points = join_vertices(examples.contour[fits], examples.n_contour[fits], inner[fits], n_inner[fits])
+    contours = list(levels(points, examples.n_contour[fits], n_inner[fits]))
+    whole = int(fits.sum())
+    below = whole + rng.permutation(len(contours) - whole)[:whole]
     made = []
-    for row in range(len(examples)):
-        nc, ni = int(examples.n_contour[row]), int(examples.n_inner[row])
-        if ni and not fits[row]:
-            continue
-        points = np.concatenate([examples.contour[row, :nc], inner[row, :ni]])
-        if ni and rng.random() < 0.45:
-            points, nc = sub_contour(rng, points, nc)
-        table = np.zeros((nc, len(points), 2))
-        if connection_table(points, nc, len(points), table):
-            made.append((points, nc, table))
-    n, m = max(nc for _, nc, _ in made), max(1, max(len(points) - nc for points, nc, _ in made))
+    for vertices, nc in contours[:whole] + [contours[number] for number in below]:
+        table = np.zeros((nc, len(vertices), 2))
+        if connection_table(np.ascontiguousarray(vertices), nc, len(vertices), table):
+            made.append((vertices, nc, table))
+    n, m = max(nc for _, nc, _ in made), max(1, max(len(vertices) - nc for vertices, nc, _ in made))
     batch = {
         "contour": np.zeros((len(made), n, 2)),
         "inner": np.zeros((len(made), m, 2)),
         "n_contour": np.array([nc for _, nc, _ in made]),
-        "n_inner": np.array([len(points) - nc for points, nc, _ in made]),
+        "n_inner": np.array([len(vertices) - nc for vertices, nc, _ in made]),
         "table": np.zeros((len(made), n, n + m, 2)),
     }
-    for row, (points, nc, table) in enumerate(made):
-        ni = len(points) - nc
-        batch["contour"][row, :nc], batch["inner"][row, :ni] = points[:nc], points[nc:]
+    for row, (vertices, nc, table) in enumerate(made):
+        ni = len(vertices) - nc
+        batch["contour"][row, :nc], batch["inner"][row, :ni] = vertices[:nc], vertices[nc:]
         batch["table"][row, :nc, :nc] = table[:, :nc]
         batch["table"][row, :nc, n : n + ni] = table[:, nc:]
     return batch

@@ -26,7 +26,6 @@ from .measures import qualities
 from .teacher import Lesson, Meshed, centre, teach
 
 SETS = ("sector", "running")
-KINDS = ("sector", *running.KINDS)
 
 
 def drawn(rng: np.random.Generator, name: str, size: int) -> Iterator[tuple[np.ndarray, float, str]]:
@@ -72,7 +71,7 @@ def make_shard(seed: tuple[int, ...], name: str, size: int, most: int) -> dict[s
         shard["contour"][row, :n], shard["n_contour"][row] = points, n
         shard["inner"][row, : len(inner)], shard["n_inner"][row] = inner, len(inner)
         shard["n_reference"][row] = len(lesson.reference.vertices) - n
-        shard["l_s"][row], shard["kind"][row] = l_s, KINDS.index(kind)
+        shard["l_s"][row], shard["kind"][row] = l_s, contours.KINDS.index(kind)
         shard["reference"][row], shard["teacher"][row] = _quality(lesson.reference), _quality(lesson.taught)
         row += 1
         if row == size:
@@ -99,13 +98,17 @@ def write_manifest(folder: Path, split: str, config: dict) -> None:
     shards = {}
     for file in sorted(folder.glob("*-*.npz")):
         shard = np.load(file)
-        counts = np.bincount(shard["kind"], minlength=len(KINDS)).tolist()
+        counts = np.bincount(shard["kind"], minlength=len(contours.KINDS)).tolist()
         digest = hashlib.sha256(file.read_bytes()).hexdigest()
-        shards[file.name] = {"examples": sum(counts), "kinds": dict(zip(KINDS, counts, strict=True)), "sha256": digest}
+        shards[file.name] = {
+            "examples": sum(counts),
+            "kinds": dict(zip(contours.KINDS, counts, strict=True)),
+            "sha256": digest,
+        }
     manifest = {
         "split": split,
         "examples": sum(shard["examples"] for shard in shards.values()),
-        "kinds": {kind: sum(shard["kinds"][kind] for shard in shards.values()) for kind in KINDS},
+        "kinds": {kind: sum(shard["kinds"][kind] for shard in shards.values()) for kind in contours.KINDS},
         "seed": config["seeds"][split],
         "configuration": config,
         "reference": {"gmsh": reference.VERSION, "options": reference.OPTIONS},

@@ -9,6 +9,7 @@ from torch import Tensor, nn
 from tessera.placement import MOST_INNER
 from tessera.scheme import LARGEST_CONTOUR
 
+from .contours import KINDS
 from .data import Examples, elements_of, move_batch, score_batch, table_batch
 
 DEVICE = "cuda" if torch.cuda.is_available() else "cpu"
@@ -32,7 +33,8 @@ def quality(a: Tensor, b: Tensor, c: Tensor) -> Tensor:
 
 
 def count_inputs(rng: np.random.Generator, examples: Examples) -> dict[str, np.ndarray]:
-    """NN1's batch."""
+    """NN1's batch: all but stars, whose number of inner vertices is given."""
+    examples = examples[examples.kind != KINDS.index("star")]
     return {name: getattr(examples, name) for name in ("contour", "n_contour", "l_s", "n_inner")}
 
 
@@ -59,9 +61,10 @@ def score_loss(net: nn.Module, batch: dict[str, np.ndarray]) -> Tensor:
 
 def move_inputs(rng: np.random.Generator, examples: Examples) -> dict[str, np.ndarray]:
     """Inner vertices to be moved."""
-    inner, fits = move_batch(rng, examples)
-    whole = {name: getattr(examples, name)[fits] for name in ("contour", "n_contour", "n_inner")}
-    return whole | {"inner": inner[fits]}
+    inner, n_inner = move_batch(rng, examples)
+    fits = n_inner > 0
+    whole = {name: getattr(examples, name)[fits] for name in ("contour", "n_contour")}
+    return whole | {"inner": inner[fits], "n_inner": n_inner[fits]}
 
 
 def move_loss(net: nn.Module, batch: dict[str, np.ndarray]) -> Tensor:

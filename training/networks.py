@@ -19,7 +19,7 @@ class NN1(nn.Module):
 
     def __init__(self, width: int = 32):
         super().__init__()
-        self.encoder = Encoder(width, 2, layers=1)
+        self.encoder = Encoder(width, 2, layers=2)
         self.head = nn.Sequential(nn.Linear(width, width), nn.ReLU(), nn.Linear(width, 2))
 
     def forward(self, contour: Tensor, n_contour: Tensor, l_s: Tensor) -> Tensor:
@@ -85,7 +85,7 @@ class Pass(nn.Module):
 class Moves(nn.Module):
     """NN2 again: new places of inner vertices that are all seen at once. (B, M, 2)."""
 
-    def __init__(self, width: int = 32, passes: int = 4):
+    def __init__(self, width: int = 32, passes: int = 3):
         super().__init__()
         self.encoder = Encoder(width, 2, layers=0)
         self.start = nn.Linear(2, width)

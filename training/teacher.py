@@ -45,12 +45,13 @@ def teach(points: np.ndarray, l_s: float, most: int = 32) -> Lesson | None:
 
     None where the reference changes the contour or makes flat elements.
     """
-    starts = [start for start in (_start(points, factor * l_s) for factor in _STARTS) if start is not None]
-    if not starts:
+    reference_mesh, another = (_start(points, factor * l_s) for factor in _STARTS)
+    if reference_mesh is None:
         return None
+    starts = [mesh for mesh in (reference_mesh, another) if mesh is not None]
     found = [_search(mesh.vertices, _matrix(mesh), len(points), l_s, most) for mesh in starts]
     vertices, opposite, _ = min(found, key=lambda result: result[2])
-    return Lesson(starts[0], Meshed(vertices, triangles(opposite, len(vertices))))
+    return Lesson(reference_mesh, Meshed(vertices, triangles(opposite, len(vertices))))
 
 
 def centre(ring: np.ndarray) -> Meshed | None:

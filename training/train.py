@@ -53,7 +53,7 @@ def validate(role: str, net: torch.nn.Module, held_out: list[tuple[int, Batch]])
 
 def validation_batches(role: str) -> list[tuple[int, Batch]]:
     """The validation examples, with the same random numbers every time."""
-    examples, rng = load("validation", 1), np.random.default_rng(0)
+    examples, rng = load("validation"), np.random.default_rng(0)
     return [(len(group), INPUTS[role](rng, trim(examples[group]))) for group in by_size(examples)]
 
 
@@ -69,9 +69,9 @@ def save(file: Path, state: dict) -> None:
     unfinished.rename(file)
 
 
-def train(role: str, settings: dict, steps: int, warm: bool, shards: int | None, config: dict) -> None:
+def train(role: str, settings: dict, steps: int, warm: bool, config: dict) -> None:
     """Run the schedule from the checkpoint, if there is one, to its end."""
-    batch_at, held_out = batches(role, load("train", shards), settings), validation_batches(role)
+    batch_at, held_out = batches(role, load("train"), settings), validation_batches(role)
     net, average = ROLES[role]().to(DEVICE), ROLES[role]().to(DEVICE)
     average.load_state_dict(net.state_dict())
     optimiser = torch.optim.AdamW(net.parameters(), lr=settings["rate"], weight_decay=settings["decay"])
@@ -117,14 +117,13 @@ def main() -> None:
     parser.add_argument("role", choices=LOSSES)
     parser.add_argument("--steps", type=int, help="length of the schedule (default: the configuration's)")
     parser.add_argument("--warm", action="store_true", help="a new schedule from the checkpoint's weights")
-    parser.add_argument("--shards", type=int, help="use only so many shards")
     arguments = parser.parse_args()
     config = configuration.read()
     settings = config["train"] | config["train"].get(arguments.role, {})
     torch.manual_seed(settings["seed"])
     torch.set_num_threads(settings["threads"])
     steps = arguments.steps or settings["steps"]
-    train(arguments.role, settings, steps, arguments.warm, arguments.shards, config)
+    train(arguments.role, settings, steps, arguments.warm, config)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,8 @@ import torch
 
 from tessera.scheme import mesh_contours
 from tessera.stopwatch import Stopwatch
-from training import configuration, contours, evaluate, generate, train
+from training import configuration, evaluate, generate, train
+from training.compact import pack
 from training.export import INPUTS, TOLERANCE, largest_difference
 from training.networks import ROLES
 
@@ -25,7 +26,9 @@ def workplace(tmp_path, monkeypatch):
     for split, seed in (("train", 1), ("validation", 2)):
         folder = tmp_path / "data" / split
         folder.mkdir(parents=True)
-        np.savez(folder / "00000.npz", **generate.make_shard((seed, 0), 30, config["data"], list(contours.KINDS)))
+        for number, name in enumerate(generate.SETS):
+            np.savez(folder / f"{name}-00000.npz", **generate.make_shard((seed, number, 0), name, 20, 32))
+        pack(folder, folder.with_suffix(".npz"))
     monkeypatch.setattr(configuration, "ROOT", tmp_path)
     monkeypatch.setattr(configuration, "read", lambda: config)
     ticks = iter(range(0, 10**9, 1000))
