@@ -1,15 +1,13 @@
 """Export trained networks to ONNX: ``python -m training.export [ROLE ...]``.
 
-Every file is checked against the framework's own output on several shapes, and carries its configuration, seed, data
-fingerprint and code version in its metadata.
+Every file is checked against the framework's own output on several shapes, and carries in its metadata the
+configuration, seed, data fingerprint and code version that it was trained with.
 """
 
 from __future__ import annotations
 
 import argparse
-import hashlib
 import json
-import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -76,21 +74,6 @@ def largest_difference(net: torch.nn.Module, file: Path, role: str) -> float:
     return worst
 
 
-def data_fingerprint(folder: Path) -> str:
-    """A hash over the names and contents of the training shards."""
-    digest = hashlib.sha256()
-    for file in sorted((folder / "train").glob("[0-9]*.npz")):
-        digest.update(file.name.encode())
-        digest.update(hashlib.sha256(file.read_bytes()).digest())
-    return digest.hexdigest()[:16]
-
-
-def code_version() -> str:
-    """The commit at the export, with what is not committed marked."""
-    command = ["git", "-C", str(configuration.ROOT), "describe", "--always", "--dirty"]
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
-
-
 def export(role: str) -> None:
     """Write one role's file, and check it."""
     state = torch.load(configuration.ROOT / "runs" / f"{role}.pt", map_location="cpu", weights_only=False)
@@ -117,8 +100,8 @@ def export(role: str) -> None:
         "configuration": json.dumps(config),
         "seed": str(config["train"]["seed"]),
         "steps": str(state["step"]),
-        "data": data_fingerprint(configuration.ROOT / config["data"]["folder"]),
-        "code": code_version(),
+        "data": state["data"],
+        "code": state["code"],
     }
     onnx.helper.set_model_props(model, metadata)
     model.doc_string = ""

@@ -21,6 +21,7 @@ from . import configuration
 from .data import Examples, by_size, load, reflect, trim
 from .losses import DEVICE, INPUTS, LOSSES
 from .networks import ROLES
+from .provenance import code_version, data_fingerprint
 
 Batch = dict[str, np.ndarray]
 
@@ -85,6 +86,7 @@ def train(role: str, settings: dict, steps: int, warm: bool, config: dict) -> No
         if not warm:
             optimiser.load_state_dict(state["optimiser"])
             start = state["step"]
+    source = {"config": config, "data": data_fingerprint(), "code": code_version()}
     losses, saved = [], time.monotonic()
     for step in tqdm(range(start, steps), initial=start, total=steps, mininterval=10):
         for group in optimiser.param_groups:
@@ -107,7 +109,7 @@ def train(role: str, settings: dict, steps: int, warm: bool, config: dict) -> No
             tqdm.write(f"step {row[0]}: loss {row[1]:.4f}, held out {row[2]:.4f}")
         if time.monotonic() - saved > 120 or last:
             weights = {"network": net.state_dict(), "average": average.state_dict()}
-            save(checkpoint, weights | {"optimiser": optimiser.state_dict(), "step": step + 1, "config": config})
+            save(checkpoint, weights | source | {"optimiser": optimiser.state_dict(), "step": step + 1})
             saved = time.monotonic()
 
 

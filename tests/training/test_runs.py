@@ -97,9 +97,8 @@ def test_export_agrees_with_the_framework(role, tmp_path, monkeypatch):
     torch.manual_seed(1)
     (tmp_path / "runs").mkdir()
     net = ROLES[role]()
-    state = {"average": net.state_dict(), "step": 0, "config": configuration.read()}
+    state = {"average": net.state_dict(), "step": 0, "config": configuration.read(), "data": "d", "code": "c"}
     torch.save(state, tmp_path / "runs" / f"{role}.pt")
-    monkeypatch.setattr(export, "code_version", lambda: "test")
     monkeypatch.setattr(configuration, "ROOT", tmp_path)
     export.export(role)
     assert largest_difference(net, tmp_path / "onnx_models" / f"{role}.onnx", role) < TOLERANCE
