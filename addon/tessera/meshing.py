@@ -212,7 +212,7 @@ def _mesh_polygons(
         target = mean_edge_lengths(division.points, division.cells)
     vertices, triangles, cell, fallbacks = mesh_cells(division.points, division.cells, target, watch)
     owner = division.owner[cell]
-    sizing = grade_from_edges(polygons, edge_length)
+    sizing = grade_from_edges(polygons, np.arange(len(polygons)), edge_length)
     vertices, triangles, parent, more = refine(vertices, triangles, owner, sizing, watch)
     counts = np.bincount(division.owner, fallbacks, minlength=len(polygons))
     counts += np.bincount(owner, more, minlength=len(polygons))

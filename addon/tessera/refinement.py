@@ -23,7 +23,7 @@ MOST_SEGMENTS = 5
 _SLIVER = 1e-6
 _MOST_ROUNDS = 20  # five to the power of it is more than any ratio of lengths
 
-Sizing = Callable[[np.ndarray], np.ndarray]
+Sizing = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
 def refine(
@@ -31,9 +31,9 @@ def refine(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Refine a mesh until its inner edges follow the sizing function.
 
-    vertices: (n, 2); triangles: (m, 3); domain: (m,) int of each triangle; sizing: (k, 2) points -> (k,) wanted edge
-    lengths. Returns vertices, the old ones first, triangles (t, 3), the old triangle that each is part of (t,), and for
-    each of those the fallbacks (m,).
+    vertices: (n, 2); triangles: (m, 3); domain: (m,) int of each triangle; sizing: (k, 2) points and the domains (k,)
+    that they are in -> (k,) wanted edge lengths. Returns vertices, the old ones first, triangles (t, 3), the old
+    triangle that each is part of (t,), and for each of those the fallbacks (m,).
     """
     parent = np.arange(len(triangles))
     fallbacks = np.zeros(len(triangles), dtype=np.int64)
@@ -41,7 +41,9 @@ def refine(
         edges, inner = inner_edges(triangles)
         ends = vertices[edges]
         length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-        segments = np.rint(length / sizing(ends.mean(axis=1))).astype(np.int64)
+        home = np.zeros(len(vertices), dtype=np.int64)
+        home[triangles] = domain[parent][:, None]
+        segments = np.rint(length / sizing(ends.mean(axis=1), home[edges[:, 0]])).astype(np.int64)
         segments = np.where(
             inner & ~_beside_slivers(vertices, triangles, edges), np.clip(segments, 1, MOST_SEGMENTS), 1
         )
