@@ -107,7 +107,7 @@ def _points_at(points: np.ndarray, length: np.ndarray, loop: np.ndarray, positio
 
 
 def _insertions(samples, points, length, loop, position, group, rounds):
-    """Given vertices to insert where polygons meet or change sides: loops and positions; the loops where none is left."""
+    """Given vertices to insert where polygons meet or change sides, by loop and position; loops where none is left."""
     count = np.bincount(loop, minlength=len(length))
     _, after = neighbours(count)
     pairs = crossing_pairs(samples, samples[after], group[loop])

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import repeat
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .assembly import mean_edge_lengths, mesh_cells
 from .boundary import resample_loops
-from .contour import clean_domains, clean_loop, nesting, signed_area
+from .bridges import bridge_holes
+from .contour import Nesting, clean_domains, clean_loop, nesting, signed_area
 from .division import divide
 from .errors import ContourError
 from .flips import flip_edges
@@ -37,7 +39,7 @@ def mesh(
 ) -> Mesh:
     """Mesh one domain: the planar region that closed curves bound.
 
-    loops: (k, 2) arrays, in any winding and order; by the even-odd rule outer contours (holes are not meshed yet).
+    loops: (k, 2) arrays, in any winding and order: outer contours, holes and islands in them by the even-odd rule.
     edge_length: the target, in the loops' unit. boundary: "resample" places vertices on the given polylines at the
     target edge length, keeping their corners; "keep" keeps exactly the given vertices and adds none on the contour.
     sizing: for later; only None is accepted. flips: a last pass exchanges edges where that raises the worse quality of
@@ -121,45 +123,41 @@ def mesh_domains(
     edge_length = checked_edge_length(edge_length)
     watch = Stopwatch()
     with watch("contours"):
-        results = [checked_domain(result, edge_length) for result in clean_domains(domains)]
+        cleaned = clean_domains(domains)
+        nested = [nesting([] if isinstance(loops, ContourError) else loops) for loops in cleaned]
+        results = list(map(checked_domain, cleaned, nested, repeat(edge_length)))
     with watch("boundary"):
         numbers = [number for number, result in enumerate(results) if not isinstance(result, ContourError)]
-        loops = [(number, loop) for number in numbers for loop in results[number]]
-        domain = np.array([number for number, _ in loops], dtype=np.int64)
-        polygons = [loop for _, loop in loops]
-        if boundary == "resample" and polygons:
-            polygons = resample_loops(polygons, edge_length, domain)
-    if polygons:
-        vertices, triangles, owner, fallbacks = _mesh_polygons(polygons, edge_length, flips, smooth, watch)
+        loops = [loop for number in numbers for loop in results[number]]
+        domain = np.repeat(numbers, [len(results[number]) for number in numbers]).astype(np.int64)
+        region, is_hole = _regions([nested[number] for number in numbers])
+        if boundary == "resample" and loops:
+            loops = resample_loops(loops, edge_length, domain)
+    if loops:
+        vertices, triangles, owner, fallbacks = _mesh_regions(loops, region, is_hole, edge_length, flips, smooth, watch)
         of = domain[owner]
         fell = np.bincount(domain, fallbacks, minlength=len(results)).astype(int)
         for number, (part, elements) in zip(numbers, _parts(vertices, triangles, of, numbers), strict=True):
             if boundary == "keep":
                 warnings = long_edge_warnings(results[number], edge_length)
             else:
-                warnings = lost_area_warnings(results[number], part, elements, edge_length)
+                area = enclosed_area(results[number], nested[number])
+                warnings = lost_area_warnings(area, part, elements, edge_length)
             results[number] = make_mesh(
                 part, elements, fallbacks=int(fell[number]), warnings=warnings, seconds=watch.seconds
             )
     return results
 
 
-def checked_domain(loops: list[np.ndarray] | ContourError, edge_length: float) -> list[np.ndarray] | ContourError:
-    """Clean loops, or the error of a domain that has holes or would have too many triangles."""
+def checked_domain(
+    loops: list[np.ndarray] | ContourError, nested: Nesting, edge_length: float
+) -> list[np.ndarray] | ContourError:
+    """Clean loops, or the error of a domain that has none or would have too many triangles."""
     if isinstance(loops, ContourError):
         return loops
     if not loops:
         return ContourError("too-few-points", "The domain has no contour. Give at least one closed loop of points.")
-    nested = nesting(loops)
-    if len(nested.holes):
-        place = tuple(map(float, loops[nested.holes[0]][0]))
-        where = f"near ({place[0]:g}, {place[1]:g})"
-        message = (
-            f"A contour lies inside another, {where}: it is a hole, and holes are not meshed yet. "
-            "Leave it out, or cut the shape into parts without holes."
-        )
-        return ContourError("hole", message, place)
-    area = sum(signed_area(loop) for loop in loops)
+    area = enclosed_area(loops, nested)
     length = sum(float(np.linalg.norm(loop - np.roll(loop, 1, axis=0), axis=1).sum()) for loop in loops)
     # Equilateral triangles, and one on each edge of the boundary: area / l² + length / l, both divided before they are
     # multiplied, so that no length is too small or too large for it.
@@ -175,6 +173,12 @@ def checked_domain(loops: list[np.ndarray] | ContourError, edge_length: float) -
     return loops
 
 
+def enclosed_area(loops: list[np.ndarray], nested: Nesting) -> float:
+    """The area of a domain, without that of its holes; loops: counter-clockwise."""
+    areas = np.array([signed_area(loop) for loop in loops])
+    return float(areas[nested.outer].sum() - areas[nested.holes].sum())
+
+
 def long_edge_warnings(loops: list[np.ndarray], edge_length: float) -> tuple[str, ...]:
     """A warning where kept boundary edges are longer than the target, or none."""
     lengths = np.concatenate([np.linalg.norm(loop - np.roll(loop, -1, axis=0), axis=1) for loop in loops])
@@ -187,14 +191,12 @@ def long_edge_warnings(loops: list[np.ndarray], edge_length: float) -> tuple[str
     )
 
 
-def lost_area_warnings(
-    loops: list[np.ndarray], vertices: np.ndarray, triangles: np.ndarray, edge_length: float
-) -> tuple[str, ...]:
-    """A warning where the resampled boundary is too coarse for the curve's shape, or none."""
+def lost_area_warnings(area: float, vertices: np.ndarray, triangles: np.ndarray, edge_length: float) -> tuple[str, ...]:
+    """A warning where the resampled boundary is too coarse for a domain of that area, or none."""
     a, b, c = np.moveaxis(vertices[triangles], 1, 0)
     u, v = b - a, c - a
     covered = 0.5 * float(np.sum(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]))
-    changed = abs(covered / sum(signed_area(loop) for loop in loops) - 1)
+    changed = abs(covered / area - 1)
     if changed < LOST_AREA:
         return ()
     return (
@@ -203,19 +205,46 @@ def lost_area_warnings(
     )
 
 
-def _mesh_polygons(
-    polygons: list[np.ndarray], edge_length: float, flips: bool, smooth: int, watch: Stopwatch
+def _regions(nested: list[Nesting]) -> tuple[np.ndarray, np.ndarray]:
+    """Of all loops of domains, one behind the other: the number of the outer contour around each (l,), and the holes.
+
+    An outer contour is its own; the numbers count all the loops.
+    """
+    region, is_hole, first = [], [], 0
+    for loops in nested:
+        own = np.arange(len(loops.outer) + len(loops.holes))
+        own[loops.holes] = loops.parent
+        region.append(own + first)
+        is_hole.append(np.isin(np.arange(len(own)), loops.holes))
+        first += len(own)
+    if not region:
+        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=bool)
+    return np.concatenate(region), np.concatenate(is_hole)
+
+
+def _mesh_regions(
+    loops: list[np.ndarray],
+    region: np.ndarray,
+    is_hole: np.ndarray,
+    edge_length: float,
+    flips: bool,
+    smooth: int,
+    watch: Stopwatch,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Mesh simple polygons: vertices (n, 2), triangles (m, 3), the polygon of each (m,), fallbacks of each polygon."""
+    """Mesh what loops bound (`bridge_holes`): vertices (n, 2), triangles (m, 3), the region of each (m,), fallbacks.
+
+    The fallbacks are counted by region (l,), for as many as there are loops.
+    """
     with watch("division"):
-        division = divide(polygons, edge_length)
+        points, polygons = bridge_holes(loops, region, is_hole, edge_length)
+        division = divide(points, polygons, edge_length)
         target = mean_edge_lengths(division.points, division.cells)
     vertices, triangles, cell, fallbacks = mesh_cells(division.points, division.cells, target, watch)
     owner = division.owner[cell]
-    sizing = grade_from_edges(polygons, np.arange(len(polygons)), edge_length)
+    sizing = grade_from_edges(loops, region, edge_length)
     vertices, triangles, parent, more = refine(vertices, triangles, owner, sizing, watch)
-    counts = np.bincount(division.owner, fallbacks, minlength=len(polygons))
-    counts += np.bincount(owner, more, minlength=len(polygons))
+    counts = np.bincount(division.owner, fallbacks, minlength=len(loops))
+    counts += np.bincount(owner, more, minlength=len(loops))
     vertices, triangles, owner, again = improve(vertices, triangles, owner[parent], watch)
     counts[: len(again)] += again
     if flips:
