@@ -26,12 +26,14 @@ import numpy as np
 from .boundary import neighbours
 from .chords import end_cost
 from .division import Polygons
-from .predicates import orientation, segments_cross
+from .faces import find_faces
+from .nearby import Boxes
+from .predicates import segments_cross
 from .spacing import graded_spacing, natural_segments, points_between
 
 # A bridge is looked for within so many spacings of its start at first; and so many of the closest vertices at a time.
 _NEAR = 8.0
-_AT_ONCE = 48
+_AT_ONCE = 32
 
 
 @dataclass(frozen=True)
@@ -74,7 +76,7 @@ def bridge_holes(
         heads.append(own[head])
         n_points += len(added)
     points, of = np.concatenate(points), np.concatenate(of)
-    corners, count = _faces(points, following, np.concatenate(tails), np.concatenate(heads))
+    corners, count = find_faces(points, following, np.concatenate(tails), np.concatenate(heads))
     return points, Polygons(corners, count, of[corners[np.cumsum(count) - count]])
 
 
@@ -87,41 +89,44 @@ def _bridges(
     net = _Net(points, 0.5 * (lengths + lengths[before]), np.arange(len(points)), after)
     loop = np.repeat(np.arange(len(size)), size)
     for _ in ("to the left", "to the right"):
+        boxes = Boxes(*_boxes(net.points, net.start, net.end))
         # The leftmost (then lowest) vertex of each hole, from left to right.
         x, y = net.points[: len(loop)].T
         tips = np.lexsort((y, x, loop))[(np.cumsum(size) - size)[is_hole]]
         for tip in tips[np.lexsort((y[tips], x[tips]))]:
-            net = _with_bridge(net, tip, edge_length)
+            net = _with_bridge(net, boxes, tip, edge_length)
         # Half a turn, which is exact: what is to the right then lies to the left.
         net = _Net(-net.points, net.spacing, net.start, net.end)
     return net.points[len(points) :], net.start[len(points) :], net.end[len(points) :]
 
 
-def _with_bridge(net: _Net, tip: int, edge_length: float) -> _Net:
-    """The net with a bridge from vertex `tip` to the left, if it has none."""
+def _boxes(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The lower and upper corners (e, 2) of the segments' bounding boxes."""
+    return np.minimum(points[start], points[end]), np.maximum(points[start], points[end])
+
+
+def _with_bridge(net: _Net, boxes: Boxes, tip: int, edge_length: float) -> _Net:
+    """The net with a bridge from vertex `tip` to the left, if it has none; boxes: of the segments, and then of more."""
     points, here = net.points, net.points[tip]
-    joined = np.concatenate([net.end[net.start == tip], net.start[net.end == tip]])
-    if (points[joined, 0] < here[0]).any():
-        return net
-    low, high = np.minimum(points[net.start], points[net.end]), np.maximum(points[net.start], points[net.end])
-    reach, size = _NEAR * max(net.spacing[tip], edge_length), np.abs(points - here).max()
+    reach, largest = _NEAR * max(net.spacing[tip], edge_length), 2 * boxes.extent
     while True:
-        reach = min(reach, 2 * size)
-        box_low, box_high = here - reach, here + [0, reach]
-        near = np.flatnonzero(np.all((points >= box_low) & (points <= box_high), axis=1) & (points[:, 0] < here[0]))
-        segment = np.flatnonzero(np.all((high >= box_low) & (low <= box_high), axis=1))
-        around = _Net(points, net.spacing, net.start[segment], net.end[segment])
+        reach = min(reach, largest)
+        around, near = _window(net, boxes, here - reach, here + [0, reach])
+        joined = np.concatenate([around.end[around.start == tip], around.start[around.end == tip]])
+        if (points[joined, 0] < here[0]).any():
+            return net
+        near = near[points[near, 0] < here[0]]
         seen = _visible(around, tip, near)
-        if len(seen) and (reach >= 2 * size or np.linalg.norm(points[seen[0]] - here) <= 0.5 * reach):
+        if len(seen) and (reach >= largest or np.linalg.norm(points[seen[0]] - here) <= 0.5 * reach):
             break
-        if reach >= 2 * size:
+        if reach >= largest:
             raise AssertionError("a hole's leftmost vertex sees one farther left")
         reach *= 2
-    cost = _costs(around, tip, seen, near, edge_length)
-    goal = seen[np.argmin(cost)]
+    goal = seen[np.argmin(_costs(around, tip, seen, near, edge_length))]
     added = _points_on(around, tip, goal, near, edge_length)
     numbers = np.concatenate([[tip], len(points) + np.arange(len(added)), [goal]])
     path = np.concatenate([points[[tip]], added, points[[goal]]])
+    boxes.add(*_boxes(path, np.arange(len(path) - 1), np.arange(1, len(path))))
     length = np.linalg.norm(np.diff(path, axis=0), axis=1)
     return _Net(
         np.concatenate([points, added]),
@@ -129,6 +134,18 @@ def _with_bridge(net: _Net, tip: int, edge_length: float) -> _Net:
         np.concatenate([net.start, numbers[:-1]]),
         np.concatenate([net.end, numbers[1:]]),
     )
+
+
+def _window(net: _Net, boxes: Boxes, low: np.ndarray, high: np.ndarray) -> tuple[_Net, np.ndarray]:
+    """The net with only the segments that meet a box, and its vertices (k,) in the box."""
+    segments = boxes.around(low, high)
+    start, end = net.start[segments], net.end[segments]
+    lowest, highest = _boxes(net.points, start, end)
+    meets = np.all((highest >= low) & (lowest <= high), axis=1)
+    start, end = start[meets], end[meets]
+    near = np.unique(np.concatenate([start, end]))
+    near = near[np.all((net.points[near] >= low) & (net.points[near] <= high), axis=1)]
+    return _Net(net.points, net.spacing, start, end), near
 
 
 def _visible(net: _Net, tip: int, near: np.ndarray) -> np.ndarray:
@@ -198,73 +215,8 @@ def _points_on(net: _Net, tip: int, goal: int, near: np.ndarray, edge_length: fl
     apart = not (added[:, None] == net.points[near]).all(axis=2).any()
     if not (monotonous and apart):
         return added[:0]
-    crossed = segments_cross(path[:-1, None], path[1:, None], net.points[net.start], net.points[net.end])
+    start, end = net.points[net.start], net.points[net.end]
+    low, high = _boxes(net.points, net.start, net.end)
+    close = np.all((low <= path.max(axis=0)) & (high >= path.min(axis=0)), axis=1)
+    crossed = segments_cross(path[:-1, None], path[1:, None], start[close], end[close])
     return added[:0] if crossed.any() else added
-
-
-def _faces(
-    points: np.ndarray, following: np.ndarray, tails: np.ndarray, heads: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """The faces on the left of the loops: corners, one face behind the other, and the number of corners of each.
-
-    following (n,): the vertex after each of the loops' n vertices, along the loop with the domain on its left; tails,
-    heads (s,): the ends of the bridges' segments, which have a face on either side.
-    """
-    # Half-edges: loop vertices by their number, then the bridges' segments, there and back.
-    n, s = len(following), len(tails)
-    origin = np.concatenate([np.arange(n), tails, heads])
-    target = np.concatenate([following, heads, tails])
-    none, there, back = np.full(n, -1), n + np.arange(s), n + s + np.arange(s)
-    # Spokes: what leaves a vertex, and what comes the same way.
-    leaves = np.concatenate([np.arange(n), there, back, none])
-    comes = np.concatenate([none, back, there, np.arange(n)])
-    spoke_at, spoke_to = np.concatenate([origin, following]), np.concatenate([target, np.arange(n)])
-    order = _counter_clockwise(points, spoke_at, spoke_to)
-    leaves, comes, spoke_at = leaves[order], comes[order], spoke_at[order]
-    # With the face on the left, the next half-edge is the first one clockwise of the way back.
-    count = np.bincount(spoke_at, minlength=len(points))
-    first = np.cumsum(count) - count
-    place = np.arange(len(order))
-    previous = np.where(place == first[spoke_at], first[spoke_at] + count[spoke_at], place) - 1
-    after = np.empty(len(origin), dtype=np.int64)
-    after[comes[comes >= 0]] = leaves[previous[comes >= 0]]
-    walk, size = _cycles(after)
-    return origin[walk], size
-
-
-def _counter_clockwise(points: np.ndarray, at: np.ndarray, to: np.ndarray) -> np.ndarray:
-    """Spokes by the vertex (k,) that they are at, and counter-clockwise around it, exactly: their order (k,)."""
-    order = np.argsort(at, kind="stable")
-    count = np.bincount(at)
-    count, first = count[at[order]], (np.cumsum(count) - count)[at[order]]
-    # Two spokes are in any order; of more, each is compared with all others, by the side of the first that it is on.
-    (many,) = np.nonzero(count > 2)
-    one = np.repeat(many, count[many])
-    other = first[one] + np.arange(len(one)) - np.repeat(np.cumsum(count[many]) - count[many], count[many])
-    centre, reference = points[at[order]], points[to[order[first]]]
-    here = points[to[order]]
-    side = np.zeros(len(order), dtype=np.int64)
-    side[many] = 2 - orientation(centre[many], reference[many], here[many])
-    side[first] = 0
-    earlier = side[other] < side[one]
-    same = np.flatnonzero((side[other] == side[one]) & (one != other))
-    earlier[same] = orientation(centre[one[same]], here[other[same]], here[one[same]]) > 0
-    rank = np.bincount(one, earlier, minlength=len(order))
-    return order[np.lexsort((rank, at[order]))]
-
-
-def _cycles(after: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The cycles of a permutation (n,), each from its smallest number, one behind the other, and their lengths."""
-    following = after.tolist()
-    seen = bytearray(len(following))
-    walk, size = [], []
-    for start in range(len(following)):
-        if seen[start]:
-            continue
-        before, here = len(walk), start
-        while not seen[here]:
-            seen[here] = 1
-            walk.append(here)
-            here = following[here]
-        size.append(len(walk) - before)
-    return np.array(walk, dtype=np.int64), np.array(size, dtype=np.int64)
