@@ -43,7 +43,7 @@ def _best(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     corners = points[:, triples]
     valid = (orientation(*np.moveaxis(corners, 2, 0)) > 0)[:, members].all(axis=2)
     q = quality(*np.moveaxis(np.ascontiguousarray(corners).view(np.complex128)[..., 0], 2, 0))[:, members]
-    score = np.where(valid, q.min(axis=2) + q.mean(axis=2), -1)
+    score = np.where(valid, q.min(axis=2) + q.mean(axis=2), 0)
     # In whole numbers, so that rounding rarely decides between equals: the first one is theirs. Beside the best one, so
     # that flat triangulations are told apart too.
     size = np.maximum(score.max(axis=1, keepdims=True), np.finfo(float).tiny)
