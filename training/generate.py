@@ -23,6 +23,7 @@ from tqdm import tqdm
 from . import configuration, contours, reference, running
 from .compact import pack
 from .measures import qualities
+from .provenance import code_version
 from .teacher import Lesson, Meshed, centre, teach
 
 SETS = ("sector", "running")
@@ -112,6 +113,8 @@ def write_manifest(folder: Path, split: str, config: dict) -> None:
         "seed": config["seeds"][split],
         "configuration": config,
         "reference": {"gmsh": reference.VERSION, "options": reference.OPTIONS},
+        # The running system's contours depend on the library and its networks, too.
+        "code": code_version(),
         "versions": {"python": platform.python_version(), "numpy": np.__version__, "numba": numba.__version__},
         "shards": shards,
     }

@@ -91,7 +91,7 @@ def move_loss(net: nn.Module, batch: dict[str, np.ndarray]) -> Tensor:
 def mesh_energy(at: Tensor, elements: Tensor) -> Tensor:
     """Mean over meshes of what is missing to perfect elements, the worst and the mean.
 
-    The worst softly, as (1/4) log of the mean of q^-4, finite where inverted; half the mean shortfall is added.
+    The worst softly, as (1/4) log of the mean of q^-4, finite where inverted; the mean shortfall is added.
     """
     index = elements.clamp(min=0).reshape(len(elements), -1, 1).expand(-1, -1, 2)
     a, b, c = torch.gather(at, 1, index).reshape(*elements.shape, 2).unbind(2)
@@ -99,7 +99,7 @@ def mesh_energy(at: Tensor, elements: Tensor) -> Tensor:
     real = (elements[..., 0] >= 0).float()
     energy = torch.where(q > 0.1, q.clamp(min=0.1) ** -4, 1e4 + 4e5 * (0.1 - q))
     worst = 0.25 * torch.log((energy * real).sum(1) / real.sum(1))
-    return (worst.clamp(max=4) + 0.5 * ((1 - q) * real).sum(1) / real.sum(1)).mean()
+    return (worst.clamp(max=4) + ((1 - q) * real).sum(1) / real.sum(1)).mean()
 
 
 def connection_loss(net: nn.Module, batch: dict[str, np.ndarray]) -> Tensor:

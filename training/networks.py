@@ -85,7 +85,7 @@ class Pass(nn.Module):
 class Moves(nn.Module):
     """NN2 again: new places of inner vertices that are all seen at once. (B, M, 2)."""
 
-    def __init__(self, width: int = 32, passes: int = 3):
+    def __init__(self, width: int = 32, passes: int = 4):
         super().__init__()
         self.encoder = Encoder(width, 2, layers=0)
         self.start = nn.Linear(2, width)

@@ -12,10 +12,11 @@ from tessera import meshing, refinement, relaxation, remeshing, triangulation
 from tessera.cavity import next_vertices
 from tessera.transform import superimpose
 
+from . import contours
+from .contours import LARGEST_CONTOUR
 from .domains import Domain
 
-KINDS = ("cell", "triangle", "cavity", "star")
-LARGEST_CONTOUR = 16
+KINDS = contours.KINDS[1:]
 LARGEST_SUB_CONTOUR = 32  # edges, and as many inner vertices; none larger was seen
 _CLEAR = 0.02  # least length of an edge and distance of a vertex from other edges, in mean edge lengths
 

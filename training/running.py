@@ -15,7 +15,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from .domains import Domain, random_domains, real_domains
-from .recording import KINDS, LARGEST_CONTOUR, Pool, SubContours, contours_of, join, record, rows_of, sub_contours_of
+from .recording import KINDS, LARGEST_CONTOUR, Pool, contours_of, join, record, rows_of, sub_contours_of
 
 _BATCH = 24  # domains that are meshed together
 
@@ -34,15 +34,6 @@ def pool(rng: np.random.Generator, size: int) -> Pool:
         others = _once(rows_of(found, ~star))
         chosen = rng.permutation(np.flatnonzero(star))[: len(others) // 3]
         parts.append(join([others, _once(rows_of(found, chosen))]))
-        count += len(parts[-1])
-    return rows_of(join(parts), rng.permutation(count))
-
-
-def sub_contour_pool(rng: np.random.Generator, size: int) -> SubContours:
-    """At least ``size`` sub-contours of random domains, shuffled, in the shares in which they occur."""
-    parts, count = [], 0
-    while count < size:
-        parts.append(sub_contours_of(record(random_domains(rng, _BATCH))))
         count += len(parts[-1])
     return rows_of(join(parts), rng.permutation(count))
 

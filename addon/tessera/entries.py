@@ -37,7 +37,7 @@ def score_entries(
     end = facet + 1
     end[end == n_contour[row]] = 0
     corners = flat.take(first + facet), flat.take(first + end), flat.take(first + vertex)
-    own = _quality(*corners)
+    own = quality(*corners)
     worst, mean = np.where(np.isfinite(values), values, 0).T
     acceptable = (worst > 0) & (own > FLAT)
     stuck = np.bincount(row, acceptable, len(points)) == 0
@@ -55,7 +55,7 @@ def score_entries(
     return scores.reshape(-1, n_facets, width), np.flatnonzero(stuck)
 
 
-def _quality(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
+def quality(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
     """`element_quality` of triangles with corners (P,), complex numbers, 0 where it is not positive: (P,) float64.
 
     Not by that function, which is nine times slower, as it looks after extreme coordinates too.

@@ -89,9 +89,9 @@ def mesh_contour(points: ArrayLike, edge_length: float, *, flips: bool = False, 
     if smooth:
         with watch("smoothing"):
             vertices = move_downhill(vertices, meshes.triangles, smooth)
-    warnings = ()
+    warnings = long_edge_warnings([contour], edge_length)
     if meshes.n_inner[0] < meshes.wanted[0]:
-        warnings = (
+        warnings += (
             f"{meshes.wanted[0]} inner vertices would suit the target edge length, {meshes.n_inner[0]} were placed "
             f"(at most {MOST_INNER}): tessera.mesh refines further",
         )

@@ -17,6 +17,7 @@ _LARGEST_STAR = 32
 # Steps along the slope that are tried, in mean edge lengths of the star.
 _STEPS = np.array([0.2, 0.1, 0.05, 0.025, 0.0125])
 _POOR = 0.1  # quality below which the energy goes on linearly
+_FLAT = 1e-9  # quality far above its rounding
 
 
 def smooth(vertices: np.ndarray, triangles: np.ndarray, steps: int, domain: np.ndarray | None = None) -> np.ndarray:
@@ -43,7 +44,7 @@ def smooth(vertices: np.ndarray, triangles: np.ndarray, steps: int, domain: np.n
 def _downhill(vertices: np.ndarray, stars: Stars) -> np.ndarray:
     """The best places (S, 2) that the stars' centres find along the slope, or the ones that they have.
 
-    A poor element never gets worse, so that none is turned over.
+    A poor element never gets worse, and none gets so flat that its sign is not sure.
     """
     ring, centre = vertices[stars.ring], vertices[stars.centre]
     real = np.arange(ring.shape[1]) < stars.n_ring[:, None]
@@ -56,7 +57,9 @@ def _downhill(vertices: np.ndarray, stars: Stars) -> np.ndarray:
     places = np.concatenate([centre[:, None], centre[:, None] + _STEPS[:, None] * direction[:, None]], axis=1)
     quality = np.where(real[:, None], _quality(ring[:, None], following[:, None], places[:, :, None]), 1)
     worst = quality.min(axis=2)
-    energy = np.where(worst >= np.minimum(worst[:, :1], _POOR), _total(_energy(quality) * real[:, None]), np.inf)
+    allowed = worst >= np.clip(worst[:, :1], _FLAT, _POOR)
+    allowed[:, 0] = True
+    energy = np.where(allowed, _total(_energy(quality) * real[:, None]), np.inf)
     best = energy.argmin(axis=1)
     return places[np.arange(len(places)), best]
 

@@ -15,8 +15,8 @@ makes impossible. Beside the paper's listing:
 - Lines 13-15, 22-26 (V_locked, F_locked): a vertex is locked when no edge of any cavity starts from it, a facet when it
   is a side of an element. Their entries overlap an element too, so that there is no list of them: all three are in
   the words of entries that are still possible (`possible` in `_connect_facets`).
-- Lines 28-30 (sub-contours): `cavities.sub_contours`; those of three edges without inner vertices are elements
-  (`single` in `_triangulate`).
+- Lines 28-30 (sub-contours): `cavities.sub_contours`; those of three edges without inner vertices are elements, and
+  those of a few more get the best of all their triangulations (`closing.close`).
 - Lines 31-34 (recursion): the others of all contours are the next level's batch: one call of NN3 for all (`_ask`).
 
 Departures from the listing:
@@ -69,6 +69,7 @@ from itertools import pairwise
 import numpy as np
 
 from .cavities import Contours, join, sub_contours
+from .closing import close
 from .entries import list_entries, score_entries
 from .overlaps import compatible, excluded_entries
 from .visibility import bits_of, edge_sides, pack_words, padded_size, possible_elements, vertex_sides
@@ -143,19 +144,23 @@ def _triangulate(
     bits = bits_of(width)
     sides, not_lower = _look_around(level, bits)
     elements, owners, fallbacks = [], [], np.zeros(n_rows, dtype=np.int32)
-    while len(level.owner):
+    while True:
+        last, of, closed = close(level)
+        elements.append(level.slots[of[:, None], last])
+        owners.append(level.owner[of])
+        level = level.rows(~closed)
+        if not len(level.owner):
+            break
         level, groups = _by_size(level)
         views = [_view(group, sides, bits) for group in groups]
         tables = _ask(level, groups, views, number, connect)
         rest = []
         for group, view, table in zip(groups, views, tables, strict=True):
             triangles, row, stuck, apex = _connect_facets(group, *view, *table)
-            left = sub_contours(group, apex, view[0], not_lower[group.owner[:, None], group.slots], view[1])
-            single = (left.n_contour == 3) & (left.n_inner == 0)
-            elements += [np.take_along_axis(group.slots[row], triangles, axis=1), left.slots[single, :3]]
-            owners += [group.owner[row], left.owner[single]]
+            elements.append(np.take_along_axis(group.slots[row], triangles, axis=1))
+            owners.append(group.owner[row])
             fallbacks += np.bincount(group.owner[stuck], minlength=n_rows).astype(np.int32)
-            rest.append(left.rows(~single))
+            rest.append(sub_contours(group, apex, view[0], not_lower[group.owner[:, None], group.slots], view[1]))
         level = join(rest)
     return np.concatenate(elements), np.concatenate(owners), fallbacks
 

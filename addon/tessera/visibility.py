@@ -9,6 +9,8 @@ contours last, as operations on long rows are fast.
 Words are unsigned integers or, for more than 64 bits, Python's own in object arrays: the same operators, only slower.
 """
 
+from functools import cache
+
 import numpy as np
 
 from .predicates import orientation
@@ -23,12 +25,15 @@ _ERROR_BOUND = np.float32(2.0**-18)
 _BLOCK_SIZE = 1 << 17
 
 
+@cache
 def bits_of(n_bits: int) -> np.ndarray:
-    """Words (n_bits,), the i-th with bit i set; of the smallest type that holds them all."""
-    for dtype in (np.uint8, np.uint16, np.uint32, np.uint64):
+    """Words (n_bits,), the i-th with bit i set; of the smallest type that holds them all. Not to be written to."""
+    bits = np.array([1 << bit for bit in range(n_bits)], dtype=object)
+    for dtype in (np.uint64, np.uint32, np.uint16, np.uint8):
         if n_bits <= 8 * np.dtype(dtype).itemsize:
-            return np.left_shift(dtype(1), np.arange(n_bits, dtype=dtype))
-    return np.array([1 << bit for bit in range(n_bits)], dtype=object)
+            bits = bits.astype(dtype)
+    bits.setflags(write=False)
+    return bits
 
 
 def as_bools(words: np.ndarray, bits: np.ndarray) -> np.ndarray:

@@ -44,13 +44,6 @@ def test_a_vertex_finds_the_middle():
     assert np.array_equal(smooth(vertices, triangles, 0), vertices)
 
 
-def test_an_inverted_element_is_mended():
-    vertices = np.concatenate([HEXAGON, [[0.7, 0.7]]])
-    triangles = np.array([[k, (k + 1) % 6, 6] for k in range(6)])
-    assert element_quality(vertices, triangles).min() < 0
-    assert element_quality(smooth(vertices, triangles, 10), triangles).min() > 0.9
-
-
 def test_smoothing_is_an_option_of_meshing():
     square = [[0, 0], [1, 0], [1, 1.2], [0, 1]]
     for mesh in (

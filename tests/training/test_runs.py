@@ -104,10 +104,10 @@ def test_export_agrees_with_the_framework(role, tmp_path, monkeypatch):
     assert largest_difference(net, tmp_path / "onnx_models" / f"{role}.onnx", role) < TOLERANCE
 
 
-def test_the_scheme_keeps_to_the_first_version_s_goal():
-    """ē_worst ≤ 15 %, ē_mean ≤ 4 % against the reference, on other contours than `make evaluate`'s."""
-    points, n_contour, l_s = evaluate.held_out(400, seed=configuration.read()["data"]["seeds"]["validation"])
+def test_the_scheme_is_better_than_the_reference():
+    """ē_worst ≤ −5 %, ē_mean ≤ 0.5 %, on fewer and other contours than `make evaluate`'s."""
+    points, n_contour, l_s = evaluate.held_out(800, seed=configuration.read()["data"]["seeds"]["validation"])
     meshes = mesh_contours(points, n_contour, l_s, Stopwatch())
     theirs, _ = evaluate.reference_meshes(points, n_contour, l_s)
     error = (theirs - evaluate.qualities(points, meshes, n_contour)) / theirs
-    assert error[:, 0].mean() <= 0.15 and error[:, 1].mean() <= 0.04
+    assert error[:, 0].mean() <= -0.05 and error[:, 1].mean() <= 0.005
