@@ -21,11 +21,11 @@ _SIXTY, _THIRTY = np.pi / 3, np.pi / 6
 
 @dataclass(frozen=True)
 class Chords:
-    """A chord for each of P polygons, from vertex slot `start` to `end` > start, in `n_segments` parts; all (P,)."""
+    """A chord for each of P polygons, from vertex slot `start` to `end` > start, in at most `most` parts; all (P,)."""
 
     start: np.ndarray
     end: np.ndarray
-    n_segments: np.ndarray
+    most: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -60,15 +60,11 @@ def choose_chords(corners: np.ndarray, size: np.ndarray, edge_length: np.ndarray
     for row in open_rows:  # no Python loop in ordinary cases
         start[row], end[row] = balanced_diagonal(corners[row, : size[row]])
     start, end = np.minimum(start, end), np.maximum(start, end)
-    rows = np.arange(len(size))
-    length = np.linalg.norm(corners[rows, end] - corners[rows, start], axis=1)
-    natural = natural_segments(length, batch.spacing[rows, start], batch.spacing[rows, end], edge_length)
     # Fewer than either arc, so that both parts have fewer edges than the polygon.
     most = np.minimum(end - start, size - end + start) - 1
-    n_segments = np.clip(np.rint(natural), 1, most).astype(np.int64)
     # The last resort may pass next to other vertices, where rounded new points could be on the wrong side.
-    n_segments[open_rows] = 1
-    return Chords(start, end, n_segments)
+    most[open_rows] = 1
+    return Chords(start, end, most)
 
 
 def natural_segments(length, spacing_start, spacing_end, edge_length) -> np.ndarray:
@@ -80,7 +76,7 @@ def natural_segments(length, spacing_start, spacing_end, edge_length) -> np.ndar
 
 
 def graded_spacing(position, length, spacing_start, spacing_end, edge_length) -> np.ndarray:
-    """Spacing at a position along a chord: the boundary's at its ends, the target away from them."""
+    """Spacing at a position along a chord: the boundary's at its ends, the target (there) away from them."""
     rise_start, rise_end = GRADING * position, GRADING * (length - position)
     coarse = np.maximum(edge_length, np.maximum(spacing_start - rise_start, spacing_end - rise_end))
     fine_start = np.where(spacing_start < edge_length, spacing_start + rise_start, np.inf)

@@ -6,7 +6,7 @@ polygon of four vertices or more has a diagonal (so a chord is always found), an
 arcs between its ends have edges (so both parts have fewer edges than the polygon).
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +18,8 @@ MAX_EDGES = 16
 _BLOCK = 200_000
 # Places along a chord between which its spacing is taken to be constant.
 _STEPS = 64
+# In polygons of fewer edges, chords are short, and a sizing function is asked at every fourth of these places only.
+_MANY_EDGES = 64
 
 
 @dataclass(frozen=True)
@@ -43,11 +45,16 @@ class _Polygons:
     owner: np.ndarray
 
 
-def divide(loops: Sequence[np.ndarray], edge_length: float | np.ndarray) -> Division:
+def divide(
+    loops: Sequence[np.ndarray],
+    edge_length: float | np.ndarray,
+    target: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None,
+) -> Division:
     """Divide simple counter-clockwise polygons (n_i, 2), spaced as wanted, into cells that are such polygons, too.
 
-    edge_length: one, or one for each polygon (m,). New vertices along a cut follow the spacing at its ends and go to
-    `edge_length` away from them.
+    edge_length: one, or one for each polygon (m,), the longest if it is not the same everywhere; target: then a function
+    of points (n, 2) and the polygon of each (n,). New vertices along a cut follow the spacing at its ends and go to the
+    target away from them.
     """
     size = np.array([len(loop) for loop in loops], dtype=np.int64)
     edge_length = np.broadcast_to(np.asarray(edge_length, dtype=np.float64), len(loops))
@@ -63,7 +70,7 @@ def divide(loops: Sequence[np.ndarray], edge_length: float | np.ndarray) -> Divi
         new_points, new_owner, parts = [points], [point_owner], [_Polygons(*(np.zeros(0, dtype=np.int64),) * 3)]
         n_points = len(points)
         for rows in _batches(polygons.size, ~small):
-            added, added_owner, part = _cut(points, n_points, polygons, rows, edge_length)
+            added, added_owner, part = _cut(points, n_points, polygons, rows, edge_length, target)
             new_points.append(added)
             new_owner.append(added_owner)
             parts.append(part)
@@ -99,17 +106,21 @@ def _padded(polygons: _Polygons, rows: np.ndarray, width: int) -> np.ndarray:
     return np.where(inside, polygons.corners[np.where(inside, first[:, None] + slot, 0)], -1)
 
 
-def _cut(points: np.ndarray, n_points: int, polygons: _Polygons, rows: np.ndarray, edge_length: np.ndarray):
+def _cut(
+    points: np.ndarray, n_points: int, polygons: _Polygons, rows: np.ndarray, edge_length: np.ndarray, target: Callable
+):
     """Cut the polygons `rows` in two -> points to add, numbered from n_points, their owners, and the parts."""
     corners = _padded(polygons, rows, int(_padded_width(polygons.size[rows[:1]])[0]))
     size, owner = polygons.size[rows], polygons.owner[rows]
     chords = choose_chords(points[corners], size, edge_length[owner])
-    n_new = chords.n_segments - 1
+    start, end = (points[corners[np.arange(len(rows)), slot]] for slot in (chords.start, chords.end))
+    wanted = edge_length[owner][:, None] if target is None else _wanted_along(start, end, owner, target, corners.shape[1])
+    n_segments, added = _chord_points(points, corners, size, chords, wanted)
+    n_new = n_segments - 1
     first_new = n_points + np.cumsum(n_new) - n_new
-    added = _chord_points(points, corners, size, chords, edge_length[owner])
 
     forward = chords.end - chords.start
-    part_size = np.stack([forward + chords.n_segments, size - forward + chords.n_segments], axis=1).ravel()
+    part_size = np.stack([forward + n_segments, size - forward + n_segments], axis=1).ravel()
     part = np.repeat(np.arange(2 * len(rows)), part_size)
     place = np.arange(len(part)) - np.repeat(np.cumsum(part_size) - part_size, part_size)
     row, second = part // 2, part % 2 == 1
@@ -122,8 +133,24 @@ def _cut(points: np.ndarray, n_points: int, polygons: _Polygons, rows: np.ndarra
     return added, np.repeat(owner, n_new), _Polygons(numbers, part_size, np.repeat(owner, 2))
 
 
-def _chord_points(points, corners, size, chords: Chords, edge_length: np.ndarray) -> np.ndarray:
-    """The new points of all chords, each from its start to its end, spaced by the graded spacing."""
+def _wanted_along(start: np.ndarray, end: np.ndarray, owner: np.ndarray, target: Callable, width: int) -> np.ndarray:
+    """(P, _STEPS) the target along chords from start (P, 2) to end (P, 2); between fewer stations in small polygons."""
+    each = 1 if width > _MANY_EDGES else 4
+    share = (np.arange(_STEPS // each) + 0.5) * each / _STEPS
+    stations = start[:, None] + share[:, None] * (end - start)[:, None]
+    wanted = target(stations.reshape(-1, 2), np.repeat(owner, len(share))).reshape(len(owner), -1)
+    if each == 1:
+        return wanted
+    at = np.clip(((np.arange(_STEPS) + 0.5) / each - 0.5), 0, len(share) - 1)
+    before = np.minimum(at.astype(np.int64), len(share) - 2)
+    return wanted[:, before] + (at - before) * (wanted[:, before + 1] - wanted[:, before])
+
+
+def _chord_points(points, corners, size, chords: Chords, wanted: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """How many segments each chord has, and the new points of all, each chord's from its start to its end.
+
+    wanted: the target along each chord (P, _STEPS), or (P, 1). The spacing is graded from that at the ends.
+    """
     row = np.arange(len(size))
 
     def spacing_at(slot: np.ndarray) -> np.ndarray:
@@ -138,14 +165,16 @@ def _chord_points(points, corners, size, chords: Chords, edge_length: np.ndarray
         length,
         spacing_at(chords.start)[:, None],
         spacing_at(chords.end)[:, None],
-        edge_length[:, None],
+        wanted,
     )
     passed = np.concatenate([np.zeros((len(size), 1)), np.cumsum(1 / spacing, axis=1)], axis=1)
+    natural = passed[:, -1] * length[:, 0] / _STEPS
+    n_segments = np.clip(np.rint(natural), 1, chords.most).astype(np.int64)
 
-    n_new = chords.n_segments - 1
+    n_new = n_segments - 1
     chord = np.repeat(row, n_new)
     number = np.arange(len(chord)) - np.repeat(np.cumsum(n_new) - n_new, n_new) + 1
-    target = passed[chord, -1] * number / chords.n_segments[chord]
-    step = np.minimum(np.sum(passed[chord] <= target[:, None], axis=1) - 1, _STEPS - 1)
-    share = (step + (target - passed[chord, step]) * spacing[chord, step]) / _STEPS
-    return (1 - share)[:, None] * start[chord] + share[:, None] * end[chord]
+    reached = passed[chord, -1] * number / n_segments[chord]
+    step = np.minimum(np.sum(passed[chord] <= reached[:, None], axis=1) - 1, _STEPS - 1)
+    share = (step + (reached - passed[chord, step]) * spacing[chord, step]) / _STEPS
+    return n_segments, (1 - share)[:, None] * start[chord] + share[:, None] * end[chord]
