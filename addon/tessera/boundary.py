@@ -96,7 +96,7 @@ def _from_a_corner(points: np.ndarray, length: np.ndarray, corner_angle: float) 
 
 
 def _vertices_as_knots(points: np.ndarray, edge_length: float) -> tuple[np.ndarray, np.ndarray, float]:
-    """Positions along a loop (k + 1,), the last where it closes, what is passed up to there (k + 1,), and in an edge."""
+    """Positions along a loop (k + 1,), the last where it closes, length up to each (k + 1,), that of an edge."""
     length = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
     return np.arange(len(points) + 1.0), np.concatenate([[0.0], np.cumsum(length)]), edge_length
 

@@ -1,4 +1,4 @@
-"""The lower envelope of cones: the smallest of value + slope · distance over many places, exact, without a loop over all.
+"""The lower envelope of cones: the smallest of value + slope · distance over many places, exact, without asking all.
 
 The places are points and segments, in a balanced tree of boxes. All questions go down the tree together, a level at a
 time; a box is left where even its nearest corner could give nothing smaller than what is known.
@@ -19,7 +19,7 @@ _MARGIN = 1 - 1e-12
 
 @dataclass(frozen=True)
 class Places:
-    """Segments from `start` to `end` (k, 2), equal for points, each with its value and slope (k,) and domain (k,) int."""
+    """Segments from `start` to `end` (k, 2), equal for points; the value, slope and domain (int) of each (k,)."""
 
     start: np.ndarray
     end: np.ndarray

@@ -52,9 +52,9 @@ def divide(
 ) -> Division:
     """Divide simple counter-clockwise polygons (n_i, 2), spaced as wanted, into cells that are such polygons, too.
 
-    edge_length: one, or one for each polygon (m,), the longest if it is not the same everywhere; target: then a function
-    of points (n, 2) and the polygon of each (n,). New vertices along a cut follow the spacing at its ends and go to the
-    target away from them.
+    edge_length: one, or one for each polygon (m,); target: where it is not the same everywhere, a function of points
+    (n, 2) and the polygon of each (n,), and edge_length the longest. New vertices along a cut follow the spacing at its
+    ends and go to the target away from them.
     """
     size = np.array([len(loop) for loop in loops], dtype=np.int64)
     edge_length = np.broadcast_to(np.asarray(edge_length, dtype=np.float64), len(loops))
@@ -114,7 +114,9 @@ def _cut(
     size, owner = polygons.size[rows], polygons.owner[rows]
     chords = choose_chords(points[corners], size, edge_length[owner])
     start, end = (points[corners[np.arange(len(rows)), slot]] for slot in (chords.start, chords.end))
-    wanted = edge_length[owner][:, None] if target is None else _wanted_along(start, end, owner, target, corners.shape[1])
+    wanted = (
+        edge_length[owner][:, None] if target is None else _wanted_along(start, end, owner, target, corners.shape[1])
+    )
     n_segments, added = _chord_points(points, corners, size, chords, wanted)
     n_new = n_segments - 1
     first_new = n_points + np.cumsum(n_new) - n_new

@@ -14,7 +14,7 @@ import numpy as np
 from .cones import Cones, Places, build_cones, join_places, lowest
 from .errors import ContourError
 from .sampling import Samples, neighbours, sample_domain
-from .sizing import FromLoops, Limits, Sizing, checked_lengths, parts_of
+from .sizing import Limits, Sizing, checked_lengths, parts_of
 
 # Cells of the sampling are at most so many times as large as the length wanted in them.
 _COARSEST = 2.0
@@ -52,23 +52,24 @@ class Target:
                     self.errors[number] = error
         return np.maximum(lowest(self.cones, points, domain, wanted), self.least[domain])
 
-
-def is_constant(sizing: Sizing | None) -> bool:
-    """Whether a sizing is the same everywhere."""
-    return sizing is None or not (callable(sizing) or isinstance(sizing, FromLoops))
+    @property
+    def constant(self) -> bool:
+        """Whether there is one length for each domain."""
+        return not self.functions and self.cones is None
 
 
 def prepare(
-    domains: dict[int, list[np.ndarray]], sizing: Sizing, limits: Limits, most_triangles: int
+    domains: dict[int, list[np.ndarray]], sizing: Sizing | None, limits: Limits, most_triangles: int
 ) -> tuple[Target, dict[int, ContourError]]:
     """The target in each of the numbered domains, and the errors of those that have one.
 
-    domains: loops, counter-clockwise, by number; most_triangles: a domain that needs more has an error.
+    domains: loops, counter-clockwise, by number; most_triangles: a domain that needs more has an error. Without a
+    sizing all lengths are the longest.
     """
     size = max(domains, default=-1) + 1
     most, least = np.full(size, limits.longest), np.full(size, limits.shortest or 0.0)
     functions, places, errors = {}, [], {}
-    for number, loops in domains.items():
+    for number, loops in domains.items() if sizing is not None else ():
         try:
             own, own_places, most[number], least[number] = _prepare_one(loops, sizing, limits, most_triangles)
         except ContourError as error:

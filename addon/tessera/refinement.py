@@ -1,6 +1,7 @@
 """Refinement of a coarse mesh by the scheme itself (paper, Algorithms 5 and 6).
 
-Every edge off the boundary that is longer than the sizing function wants is split into at most five segments; every
+Every edge off the boundary that is longer than the sizing function wants is split into at most five segments, so long
+as it wants them where they are; every
 element with a split edge becomes a sub-contour, meshed by the scheme at its own mean edge length; NN2 recomputes the
 places of the inner vertices; until no edge is split. (The listing's condition to split, ``|l_e - l_s| < eps``, is a
 misprint.)
@@ -21,9 +22,11 @@ from .stopwatch import Stopwatch
 MOST_SEGMENTS = 5
 # An element flatter than this keeps its edges: its sub-contour could cross itself by the rounding of inserted vertices.
 _SLIVER = 1e-6
+# Where along an edge the sizing function is asked.
+_STATIONS = np.arange(0.1, 1.0, 0.2)
 _MOST_ROUNDS = 20  # five to the power of it is more than any ratio of lengths
 
-Sizing = Callable[[np.ndarray], np.ndarray]
+Sizing = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
 def refine(
@@ -31,9 +34,9 @@ def refine(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Refine a mesh until its inner edges follow the sizing function.
 
-    vertices: (n, 2); triangles: (m, 3); domain: (m,) int of each triangle; sizing: (k, 2) points -> (k,) wanted edge
-    lengths. Returns vertices, the old ones first, triangles (t, 3), the old triangle that each is part of (t,), and for
-    each of those the fallbacks (m,).
+    vertices: (n, 2); triangles: (m, 3); domain: (m,) int of each triangle; sizing: (k, 2) points and the domains (k,)
+    that they are in -> (k,) wanted edge lengths. Returns vertices, the old ones first, triangles (t, 3), the old
+    triangle that each is part of (t,), and for each of those the fallbacks (m,).
     """
     parent = np.arange(len(triangles))
     fallbacks = np.zeros(len(triangles), dtype=np.int64)
@@ -41,13 +44,17 @@ def refine(
         edges, inner = inner_edges(triangles)
         ends = vertices[edges]
         length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-        segments = np.rint(length / sizing(ends.mean(axis=1))).astype(np.int64)
+        home = np.zeros(len(vertices), dtype=np.int64)
+        home[triangles] = domain[parent][:, None]
+        along = ends[:, :1] + _STATIONS[:, None] * (ends[:, 1:] - ends[:, :1])
+        wanted = sizing(along.reshape(-1, 2), np.repeat(home[edges[:, 0]], len(_STATIONS))).reshape(-1, len(_STATIONS))
+        segments = np.rint(length * (1 / wanted).mean(axis=1)).astype(np.int64)
         segments = np.where(
             inner & ~_beside_slivers(vertices, triangles, edges), np.clip(segments, 1, MOST_SEGMENTS), 1
         )
         if segments.max(initial=1) == 1:
             break
-        points, cells = _sub_contours(vertices, triangles, edges, segments)
+        points, cells = _sub_contours(vertices, triangles, edges, segments, wanted)
         split = (cells[:, 3:] >= 0).any(axis=1)
         vertices, new, owner, fell = mesh_cells(points, cells[split], mean_edge_lengths(points, cells[split]), watch)
         np.add.at(fallbacks, parent[split], fell)
@@ -69,15 +76,22 @@ def _beside_slivers(vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarr
 
 
 def _sub_contours(
-    vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray, segments: np.ndarray
+    vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray, segments: np.ndarray, wanted: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Insert vertices on the edges: all points (p, 2), and each triangle's contour (m, 15), padded with -1."""
+    """Insert vertices on the edges: all points (p, 2), and each triangle's contour (m, 15), padded with -1.
+
+    segments: (e,) how many each edge comes to; wanted: (e, 5) lengths at `_STATIONS`.
+    """
     n = len(vertices)
     edge = np.repeat(np.arange(len(edges)), segments - 1)
     first = np.cumsum(segments - 1) - (segments - 1)
     step = np.arange(len(edge)) - first[edge] + 1
     start, end = vertices[edges[edge, 0]], vertices[edges[edge, 1]]
-    inserted = start + (step / segments[edge])[:, None] * (end - start)
+    passed = np.concatenate([np.zeros((len(edges), 1)), np.cumsum(1 / wanted, axis=1)], axis=1)
+    reached = passed[edge, -1] * (step / segments[edge])
+    part = np.minimum(np.sum(passed[edge] <= reached[:, None], axis=1) - 1, len(_STATIONS) - 1)
+    share = (part + (reached - passed[edge, part]) * wanted[edge, part]) / len(_STATIONS)
+    inserted = start + share[:, None] * (end - start)
     stride = int(triangles.max()) + 1
     key = edges[:, 0] * stride + edges[:, 1]
     cells = np.full((len(triangles), 3, MOST_SEGMENTS), -1, dtype=np.int64)

@@ -1,4 +1,4 @@
-"""Places all over a domain at which a sizing function is looked at: the leaves of a quadtree, as fine as it asks for."""
+"""Places all over a domain, at which a sizing function is looked at: the leaves of a quadtree."""
 
 from __future__ import annotations
 
@@ -69,7 +69,9 @@ def sample_domain(
         kept = inside | (first >= 0)
         number = np.cumsum(kept) - 1
         values = function(points[kept])
-        return Samples(corner[kept], level[kept], side[kept], inside[kept], points[kept], values, start, end, number[cell])
+        return Samples(
+            corner[kept], level[kept], side[kept], inside[kept], points[kept], values, start, end, number[cell]
+        )
 
     samples = look(corner, np.zeros(len(corner), dtype=np.int64), pieces)
     while (split := too_large(samples) & (samples.level < _MOST_LEVELS)).any():
@@ -112,7 +114,9 @@ def _rows(samples: Samples, rows: np.ndarray) -> Samples:
 
 
 def _join(one: Samples, other: Samples) -> Samples:
-    columns = {name: np.concatenate([getattr(one, name), getattr(other, name)]) for name in Samples.__dataclass_fields__}
+    columns = {
+        name: np.concatenate([getattr(one, name), getattr(other, name)]) for name in Samples.__dataclass_fields__
+    }
     columns["piece_cell"][len(one.piece_cell) :] += len(one.level)
     return Samples(**columns)
 
@@ -154,7 +158,9 @@ def neighbours(samples: Samples) -> tuple[np.ndarray, np.ndarray]:
                 corner = samples.corner[left] + step >> up
                 wanted = corner[:, 0] * stride + corner[:, 1]
                 place = np.minimum(np.searchsorted(key, wanted), max(len(key) - 1, 0))
-                hit = (key[place] == wanted) & (corner >= 0).all(axis=1) if len(key) else np.zeros(len(left), dtype=bool)
+                hit = (
+                    (key[place] == wanted) & (corner >= 0).all(axis=1) if len(key) else np.zeros(len(left), dtype=bool)
+                )
                 pairs.append(np.column_stack([left[hit], number[place[hit]]]))
                 left = left[~hit]
     return tuple(np.concatenate(pairs).T)

@@ -6,7 +6,7 @@ functions here returns; `smallest` joins any of them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,30 +23,49 @@ LONG = 1.5  # times the target edge length, from which an edge is longer than it
 _BLOCK = 1 << 22  # distances held at a time
 
 
-def grade_from_edges(polygons: list[np.ndarray], edge_length: float) -> Callable[[np.ndarray], np.ndarray]:
-    """The target edge length everywhere, but larger beside boundary edges that are longer and may not be split.
+def grade_from_edges(
+    polygons: list[np.ndarray], owner: np.ndarray, target: Callable[[np.ndarray, np.ndarray], np.ndarray]
+) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
+    """The target everywhere, but larger beside boundary edges that are longer and may not be split.
 
-    polygons: (k, 2) arrays, as they will be in the mesh. Without long edges the function is constant.
+    polygons: (k, 2) arrays, as they will be in the mesh; owner: the number of the mesh that each bounds; target: points
+    (n, 2) of meshes (n,) -> (n,) wanted edge lengths. A mesh knows nothing of the others' edges, wherever they are.
+    Without long edges the function is the target.
     """
     starts = np.concatenate(polygons)
     ends = np.concatenate([np.roll(polygon, -1, axis=0) for polygon in polygons])
     lengths = np.linalg.norm(ends - starts, axis=1)
-    long = lengths > LONG * edge_length
+    of = np.repeat(owner, [len(polygon) for polygon in polygons])
+    long = np.flatnonzero(lengths > LONG * target(0.5 * (starts + ends), of))
+    long = long[np.argsort(of[long], kind="stable")]
     starts, edges, lengths = starts[long], (ends - starts)[long], lengths[long]
+    owners, first, count = np.unique(of[long], return_index=True, return_counts=True)
 
-    def sizing(points: np.ndarray) -> np.ndarray:
-        """(k, 2) points -> (k,) wanted edge lengths."""
-        wanted = np.full(len(points), float(edge_length))
-        step = max(1, _BLOCK // max(1, len(points)))
-        for first in range(0, len(starts), step):
-            part = slice(first, first + step)
-            offset = points[:, None] - starts[part]
-            t = (offset * edges[part]).sum(-1) / (edges[part] ** 2).sum(-1)
-            away = np.linalg.norm(offset - np.clip(t, 0, 1)[..., None] * edges[part], axis=-1)
-            wanted = np.maximum(wanted, (lengths[part] - GRADATION * away).max(axis=1))
+    def sizing(points: np.ndarray, owner: np.ndarray) -> np.ndarray:
+        """(k, 2) points of meshes (k,) -> (k,) wanted edge lengths."""
+        wanted = target(points, owner)
+        order = np.argsort(owner, kind="stable")
+        begin, end = (np.searchsorted(owner[order], owners, side=side) for side in ("left", "right"))
+        for i, j, b, n in zip(begin, end, first, count, strict=True):
+            here, long = order[i:j], slice(b, b + n)
+            wanted[here] = _beside(points[here], starts[long], edges[long], lengths[long], wanted[here])
         return wanted
 
     return sizing
+
+
+def _beside(
+    points: np.ndarray, starts: np.ndarray, edges: np.ndarray, lengths: np.ndarray, wanted: np.ndarray
+) -> np.ndarray:
+    """The `wanted` lengths (k,) at points (k, 2), or what edges (e, 2) from `starts` ask for there, if that is more."""
+    step = max(1, _BLOCK // max(1, len(points)))
+    for first in range(0, len(starts), step):
+        part = slice(first, first + step)
+        offset = points[:, None] - starts[part]
+        t = (offset * edges[part]).sum(-1) / (edges[part] ** 2).sum(-1)
+        away = np.linalg.norm(offset - np.clip(t, 0, 1)[..., None] * edges[part], axis=-1)
+        wanted = np.maximum(wanted, (lengths[part] - GRADATION * away).max(axis=1))
+    return wanted
 
 
 @dataclass(frozen=True)
@@ -67,13 +86,49 @@ class Limits:
         return self.longest / 100 if self.shortest is None else self.shortest
 
 
+def checked_limits(edge_length: float, min_edge_length: float | None, gradation: float, corner_angle: float) -> Limits:
+    """The limits that a user gives, the corner angle in degrees.
+
+    Raises ContourError "edge-length" for lengths that are none, and ValueError for numbers out of range.
+    """
+    longest = checked_edge_length(edge_length, "target edge length")
+    shortest = None if min_edge_length is None else checked_edge_length(min_edge_length, "min_edge_length")
+    if shortest is not None and shortest > longest:
+        message = (
+            f"The min_edge_length {shortest:g} is longer than the target edge length {longest:g}. Give a shorter one."
+        )
+        raise ContourError("edge-length", message)
+    if not 1 < gradation < np.inf:
+        raise ValueError(f"gradation is the ratio of edge lengths beside each other, more than 1, not {gradation!r}")
+    if not 0 < corner_angle < 180:
+        raise ValueError(f"corner_angle is between 0 and 180 degrees, not {corner_angle!r}")
+    return Limits(longest, shortest, float(np.log(gradation)), float(np.radians(corner_angle)))
+
+
+def checked_edge_length(edge_length: float, name: str = "target edge length") -> float:
+    """A length as a float; raises ContourError "edge-length" unless it is a positive finite number."""
+    if not np.isfinite(value := _as_positive(edge_length)):
+        message = f"The {name} is {edge_length}; it must be a positive number. Give one in the curve's unit."
+        raise ContourError("edge-length", message)
+    return value
+
+
+def _as_positive(number: float) -> float:
+    """The number as a float, or NaN if it is no positive finite number."""
+    try:
+        value = float(number)
+    except (TypeError, ValueError, OverflowError):
+        return np.nan
+    return value if 0 < value < np.inf else np.nan
+
+
 # What a sizing comes to once the loops are known: a number, a function of points, or places from which it grows.
 Part = float | Callable[[np.ndarray], np.ndarray] | Places
 
 
 @dataclass(frozen=True)
 class FromLoops:
-    """A sizing that is made when meshing starts: `prepare` takes a domain's loops, counter-clockwise, and the limits."""
+    """A sizing made when meshing starts: `prepare` takes a domain's loops, counter-clockwise, and the limits."""
 
     prepare: Callable[[list[np.ndarray], Limits], list[Part]]
 
@@ -90,20 +145,13 @@ def parts_of(sizing: Sizing, loops: list[np.ndarray], limits: Limits) -> list[Pa
 
 def positive(number: float, name: str) -> float:
     """A positive finite number as a float; raises ContourError "sizing" for anything else."""
-    try:
-        value = float(number)
-    except (TypeError, ValueError, OverflowError):
-        value = np.nan
-    if not (np.isfinite(value) and value > 0):
+    if not np.isfinite(value := _as_positive(number)):
         raise ContourError("sizing", f"{name} is {number!r}; it must be a positive number. Give one.")
     return value
 
 
 def smallest(*sizings: Sizing) -> FromLoops:
-    """The smallest of several sizings, everywhere.
-
-    >>> sizing = smallest(by_curvature(0.3), by_thickness(3), lambda points: 0.1 + abs(points[:, 0]), 0.5)
-    """
+    """The smallest of several sizings, everywhere."""
     return FromLoops(lambda loops, limits: [part for one in sizings for part in parts_of(one, loops, limits)])
 
 

@@ -13,7 +13,7 @@ _BLOCK = 1 << 14
 _MOST_ROUNDS = 30
 
 
-def thincut(
+def thin_parts(
     start: np.ndarray, end: np.ndarray, elements: float, longest: float, shortest: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Lines across the thin parts of a domain: (k, 2) from where, (k, 2) to where.

@@ -75,7 +75,7 @@ def test_refinement_reaches_the_target_and_keeps_the_boundary():
     vertices = np.vstack([outline, [[0, 0]]])
     fan = np.stack([np.arange(24), (np.arange(24) + 1) % 24, np.full(24, 24)], axis=1)
 
-    def sizing(points):
+    def sizing(points, domain):
         return np.full(len(points), 0.9)
 
     vertices, triangles, parent, _ = refine(vertices, fan, np.zeros(24, int), sizing, Stopwatch())
@@ -88,8 +88,10 @@ def test_refinement_reaches_the_target_and_keeps_the_boundary():
 
 def test_no_refinement_where_none_is_needed():
     vertices, triangles, _ = disturbed_grid(4, 3)
-    again = refine(
-        vertices, triangles, np.zeros(len(triangles), int), lambda points: np.full(len(points), 2.0), Stopwatch()
-    )
+
+    def sizing(points, domain):
+        return np.full(len(points), 2.0)
+
+    again = refine(vertices, triangles, np.zeros(len(triangles), int), sizing, Stopwatch())
     np.testing.assert_array_equal(again[0], vertices)
     np.testing.assert_array_equal(again[1], triangles)
