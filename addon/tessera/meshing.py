@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .assembly import mean_edge_lengths, mesh_cells
+from .assembly import mean_edge_lengths, mesh_cells, wanted_edge_lengths
 from .boundary import resample_loops
 from .contour import clean_domains, clean_loop, nesting, signed_area
 from .division import divide
@@ -240,7 +240,10 @@ def _mesh_polygons(
 
     with watch("division"):
         division = divide(polygons, target.most[domain], None if target.constant else wanted)
-        cell_target = mean_edge_lengths(division.points, division.cells)
+        if target.constant:
+            cell_target = mean_edge_lengths(division.points, division.cells)
+        else:
+            cell_target = wanted_edge_lengths(division.points, division.cells, division.owner, wanted)
     vertices, triangles, cell, fallbacks = mesh_cells(division.points, division.cells, cell_target, watch)
     owner = division.owner[cell]
     sizing = grade_from_edges(polygons, np.arange(len(polygons)), wanted)

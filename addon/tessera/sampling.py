@@ -64,9 +64,9 @@ def sample_domain(
         inside = _inside(points, *outline)
         first = np.full(len(level), -1)
         first[cell[::-1]] = np.arange(len(cell))[::-1]
-        middle = 0.5 * (start + end)
-        points = np.where((~inside & (first >= 0))[:, None], middle[first], points)
         kept = inside | (first >= 0)
+        beside = kept & ~inside
+        points[beside] = 0.5 * (start + end)[first[beside]]
         number = np.cumsum(kept) - 1
         values = function(points[kept])
         return Samples(

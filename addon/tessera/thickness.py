@@ -37,7 +37,7 @@ def thin_parts(
         thin = np.isfinite(across) & (length < longest)
         done = thin & (step <= 0.5 * length)
         froms.append(origin[done])
-        tos.append((origin + across[:, None] * inward)[done])
+        tos.append(origin[done] + across[done, None] * inward[done])
         pieces = cut(a[thin & ~done], b[thin & ~done], np.full(np.count_nonzero(thin & ~done), 2))
     return np.concatenate([np.zeros((0, 2)), *froms]), np.concatenate([np.zeros((0, 2)), *tos])
 
