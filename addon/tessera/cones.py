@@ -36,8 +36,9 @@ class Places:
 class Cones:
     """A tree over places, in leaves of `_LEAF`; of each level's nodes, from the root, the boxes and smallest numbers.
 
-    places: as the leaves have them, with repeats; number: of each among the given ones. levels: (low (n, 3), high
-    (n, 3), value (n,), slope (n,), best (n,)): boxes in x, y and domain; best is the place of the smallest value.
+    places: as the leaves have them, with repeats of the last; number: of each among the given ones, -1 for repeats.
+    levels: (low (n, 3), high (n, 3), value (n,), slope (n,), best (n,)): boxes in x, y and domain; best is the place of
+    the smallest value.
     """
 
     places: Places
@@ -58,8 +59,9 @@ def build_cones(places: Places) -> Cones | None:
     depth = max(0, int(np.ceil(np.log2(n / _LEAF))))
     width = _LEAF << depth
     # Padding repeats the last place, which changes no minimum.
-    order = np.minimum(np.arange(width), n - 1)[None]
+    order = np.arange(width)[None]
     middle = np.column_stack([0.5 * (places.start + places.end), places.domain])
+    middle = middle[np.minimum(order[0], n - 1)]
     for _ in range(depth):
         here = middle[order]
         extent = np.ptp(here, axis=1)
@@ -67,7 +69,8 @@ def build_cones(places: Places) -> Cones | None:
         along = np.take_along_axis(here, axis[:, None, None], axis=2)[..., 0]
         order = np.take_along_axis(order, np.argsort(along, axis=1, kind="stable"), axis=1)
         order = order.reshape(2 * len(order), -1)
-    places = places.rows(order.ravel())
+    number = np.where(order.ravel() < n, order.ravel(), -1)
+    places = places.rows(number)
     low = np.column_stack([np.minimum(places.start, places.end), places.domain])
     high = np.column_stack([np.maximum(places.start, places.end), places.domain])
     levels = []
@@ -84,7 +87,7 @@ def build_cones(places: Places) -> Cones | None:
                 best,
             )
         )
-    return Cones(places, order.ravel(), tuple(levels))
+    return Cones(places, number, tuple(levels))
 
 
 def lowest(cones: Cones | None, points: np.ndarray, domain: np.ndarray, most: np.ndarray) -> np.ndarray:
@@ -153,5 +156,5 @@ def within(cones: Cones, points: np.ndarray, radius: np.ndarray) -> tuple[np.nda
     place = (node[:, None] * _LEAF + np.arange(_LEAF)).ravel()
     query = np.repeat(query, _LEAF)
     away = np.hypot(*(points[query] - cones.places.start[place]).T)
-    near = away <= radius[query]
+    near = (away <= radius[query]) & (cones.number[place] >= 0)
     return query[near], cones.number[place[near]], away[near]

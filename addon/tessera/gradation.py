@@ -22,7 +22,7 @@ _COARSEST = 2.0
 _DETOUR = 0.8
 # A function may fall unseen between samples, but not to less than this share of the least that was seen.
 _UNSEEN = 0.5
-_MOST_GROWTH = 1e100
+_MOST_EDGES = 1e100  # along the side of a cell: more are as many
 _EQUILATERAL = 4 / np.sqrt(3)  # triangles in the square of their edge length
 
 
@@ -100,7 +100,8 @@ def _prepare_one(loops: list[np.ndarray], sizing: Sizing, limits: Limits, most_t
         return np.maximum(lowest(cones, points, np.zeros(len(points), dtype=np.int64), wanted), shortest)
 
     def too_large(samples: Samples) -> np.ndarray:
-        _check_number(_fewest_triangles(samples, limits.slope), samples, most_triangles)
+        if _fewest_triangles(samples, limits.slope) > most_triangles:
+            raise _too_many(samples, samples.values, most_triangles)
         large = samples.size > _COARSEST * samples.values
         if functions and not large.any():
             foot, top = _rises(samples, limits.slope)
@@ -113,9 +114,13 @@ def _prepare_one(loops: list[np.ndarray], sizing: Sizing, limits: Limits, most_t
         places += _feet(samples, limits.slope)
         cones = build_cones(join_places(places)) if places else None
         values = lowest(cones, samples.points, np.zeros(len(values), dtype=np.int64), values)
-    wanted = _EQUILATERAL * np.sum((samples.size[samples.inside] / values[samples.inside]) ** 2)
-    _check_number(wanted + np.sum(samples.boundary() / values), samples, most_triangles)
-    return functions, join_places(places) if places else None, values.max(), max(shortest, _UNSEEN * values.min())
+    if error := _too_many(samples, values, most_triangles):
+        raise error
+    if values.min() == values.max():
+        return [], None, values.max(), shortest
+    if functions:
+        shortest = max(shortest, _UNSEEN * values.min())
+    return functions, join_places(places) if places else None, values.max(), shortest
 
 
 def _smallest_of(functions: list[Callable[[np.ndarray], np.ndarray]], points: np.ndarray) -> np.ndarray:
@@ -166,19 +171,22 @@ def _feet(samples: Samples, slope: float) -> list[Places]:
 def _fewest_triangles(samples: Samples, slope: float) -> float:
     """How many triangles there are at least: in each cell the length may grow from its place to all sides."""
     inside = samples.inside
-    growth = np.minimum(slope * samples.size[inside] / np.sqrt(np.pi) / samples.values[inside], _MOST_GROWTH)
+    growth = slope / np.sqrt(np.pi) * np.minimum(samples.size[inside] / samples.values[inside], _MOST_EDGES)
     return _EQUILATERAL * 2 * np.pi / slope**2 * float(np.sum(np.log1p(growth) - growth / (1 + growth)))
 
 
-def _check_number(wanted: float, samples: Samples, most: int) -> None:
-    """Raise ContourError "too-many-triangles" if there are."""
-    if wanted <= most:
-        return
-    smallest = int(np.argmin(samples.values))
+def _too_many(samples: Samples, values: np.ndarray, most: int) -> ContourError | None:
+    """The error "too-many-triangles" of lengths `values` (n,) in the cells, if there are more than `most`."""
+    edges = np.minimum(samples.size / values, _MOST_EDGES)
+    triangles = _EQUILATERAL * np.sum(edges[samples.inside] ** 2) + np.sum(samples.boundary() / samples.size * edges)
+    if triangles <= most:
+        return None
+    smallest = int(np.argmin(values))
     place = tuple(map(float, samples.points[smallest]))
+    factor = 1.1 * (triangles / most) ** 0.5
     message = (
-        f"The sizing asks for about {wanted:.2g} triangles or more, the most is {most:,}; it is smallest, "
-        f"{samples.values[smallest]:.2g}, at ({place[0]:g}, {place[1]:g}). Let it be larger, by a factor of "
-        f"{1.1 * (wanted / most) ** 0.5:.2g} if everywhere, or give a larger min_edge_length."
+        f"The sizing asks for about {triangles:.2g} triangles, the most is {most:,}; it is smallest, "
+        f"{values[smallest]:.2g}, at ({place[0]:g}, {place[1]:g}). Multiply it by {factor:.2g} or more, or give a "
+        "larger min_edge_length."
     )
-    raise ContourError("too-many-triangles", message, place)
+    return ContourError("too-many-triangles", message, place)

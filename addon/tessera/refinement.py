@@ -1,10 +1,9 @@
 """Refinement of a coarse mesh by the scheme itself (paper, Algorithms 5 and 6).
 
-Every edge off the boundary that is longer than the sizing function wants is split into at most five segments, so long
-as it wants them where they are; every
-element with a split edge becomes a sub-contour, meshed by the scheme at its own mean edge length; NN2 recomputes the
-places of the inner vertices; until no edge is split. (The listing's condition to split, ``|l_e - l_s| < eps``, is a
-misprint.)
+Every edge off the boundary that is longer than the sizing function wants is split into at most five segments, each as
+long as it is wanted there; every element with a split edge becomes a sub-contour, meshed by the scheme at its own mean
+edge length; NN2 recomputes the places of the inner vertices; until no edge is split. (The listing's condition to split,
+``|l_e - l_s| < eps``, is a misprint.)
 """
 
 from __future__ import annotations
@@ -24,6 +23,8 @@ MOST_SEGMENTS = 5
 _SLIVER = 1e-6
 # Where along an edge the sizing function is asked.
 _STATIONS = np.arange(0.1, 1.0, 0.2)
+# Edges no longer than this, times the length that is wanted in the middle, are one segment: it does not change so fast.
+_SURELY_ONE = 1.1
 _MOST_ROUNDS = 20  # five to the power of it is more than any ratio of lengths
 
 Sizing = Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -43,14 +44,10 @@ def refine(
     for _ in range(_MOST_ROUNDS):
         edges, inner = inner_edges(triangles)
         ends = vertices[edges]
-        length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         home = np.zeros(len(vertices), dtype=np.int64)
         home[triangles] = domain[parent][:, None]
-        along = ends[:, :1] + _STATIONS[:, None] * (ends[:, 1:] - ends[:, :1])
-        wanted = sizing(along.reshape(-1, 2), np.repeat(home[edges[:, 0]], len(_STATIONS))).reshape(-1, len(_STATIONS))
-        segments = np.rint(length * (1 / wanted).mean(axis=1)).astype(np.int64)
-        segments = np.where(
-            inner & ~_beside_slivers(vertices, triangles, edges), np.clip(segments, 1, MOST_SEGMENTS), 1
+        segments, wanted = _segments(
+            ends, inner & ~_beside_slivers(vertices, triangles, edges), home[edges[:, 0]], sizing
         )
         if segments.max(initial=1) == 1:
             break
@@ -66,6 +63,23 @@ def refine(
         with watch("relaxation"):
             vertices = relax(vertices, triangles[changed], of[changed], passes=1)
     return vertices, triangles, parent, fallbacks
+
+
+def _segments(
+    ends: np.ndarray, may_split: np.ndarray, domain: np.ndarray, sizing: Sizing
+) -> tuple[np.ndarray, np.ndarray]:
+    """How many segments edges (e, 2, 2) come to (e,), and the lengths wanted at their stations (e, 5) if it is several.
+
+    may_split: (e,) bool; domain: (e,).
+    """
+    length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    segments, wanted = np.ones(len(ends), dtype=np.int64), np.ones((len(ends), len(_STATIONS)))
+    rows = np.flatnonzero(may_split)
+    rows = rows[length[rows] > _SURELY_ONE * sizing(ends[rows].mean(axis=1), domain[rows])]
+    along = ends[rows, :1] + _STATIONS[:, None] * (ends[rows, 1:] - ends[rows, :1])
+    wanted[rows] = sizing(along.reshape(-1, 2), np.repeat(domain[rows], len(_STATIONS))).reshape(-1, len(_STATIONS))
+    segments[rows] = np.clip(np.rint(length[rows] * (1 / wanted[rows]).mean(axis=1)), 1, MOST_SEGMENTS)
+    return segments, wanted
 
 
 def _beside_slivers(vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray) -> np.ndarray:
