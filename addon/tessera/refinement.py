@@ -46,9 +46,9 @@ def refine(
         ends = vertices[edges]
         home = np.zeros(len(vertices), dtype=np.int64)
         home[triangles] = domain[parent][:, None]
-        segments, wanted = _segments(
-            ends, inner & ~_beside_slivers(vertices, triangles, edges), home[edges[:, 0]], sizing
-        )
+        may_split = inner & ~_beside_slivers(vertices, triangles, edges)
+        with watch("sizing"):
+            segments, wanted = _segments(ends, may_split, home[edges[:, 0]], sizing)
         if segments.max(initial=1) == 1:
             break
         points, cells = _sub_contours(vertices, triangles, edges, segments, wanted)
