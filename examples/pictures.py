@@ -13,6 +13,7 @@ import tessera
 from tessera import networks
 from tessera.assembly import mean_edge_lengths, mesh_cells
 from tessera.boundary import resample
+from tessera.bridges import bridge_holes
 from tessera.cavity import is_inside
 from tessera.contour import clean_loop
 from tessera.division import divide
@@ -82,7 +83,7 @@ def way_of_the_data() -> None:
     """One curve at each stage: ``architecture.png``."""
     curve, edge_length = clean_loop(leaf()), 0.17
     boundary = resample(curve, edge_length)
-    division = divide([boundary], edge_length)
+    division = divide(*bridge_holes([boundary], np.zeros(1, int), np.zeros(1, bool), edge_length), edge_length)
     target = mean_edge_lengths(division.points, division.cells)
     vertices, triangles, _, _ = mesh_cells(division.points, division.cells, target, Stopwatch())
     mesh = tessera.mesh([curve], edge_length)

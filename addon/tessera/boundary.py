@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from .contour import points_inside
 from .crossings import crossing_pairs
 from .predicates import orientation
 from .sampling import cut
@@ -34,13 +35,13 @@ def resample_loops(
     """New vertices for simple counter-clockwise polygons (k, 2); they are simple and counter-clockwise again.
 
     edge_length: one, or one for each loop (m,), or a function of points (n, 2) and the domain of each (n,). domain (m,)
-    int: loops of one domain, which do not meet, do not meet afterwards either; without it each loop is a domain of its
-    own. corner_angle: in radians.
+    int: loops of one domain, which do not meet, do not meet afterwards either, and lie inside each other as before;
+    without it each loop is a domain of its own. corner_angle: in radians.
 
     The vertices lie on the given polyline. Corners (turning by more than the corner angle) stay; between two of them
     are as many edges as come nearest to `edge_length`, equally long along the polyline, or as long as it is there. A
-    loop without corners starts at its leftmost vertex, wherever its list starts. Where such spacing would make the
-    polygon meet itself, given vertices are inserted until it does not.
+    loop without corners starts at its leftmost vertex, wherever its list starts. Where such spacing would make polygons
+    meet, or put one inside another or out of it that was not, given vertices are inserted until it does not.
     """
     length = np.array([len(loop) for loop in loops])
     group = np.arange(len(loops)) if domain is None else np.asarray(domain)
@@ -72,7 +73,7 @@ def resample_loops(
         rounds += 1
 
 
-def _neighbours(length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def neighbours(length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The vertex before and after each vertex, for loops of `length` (m,) one behind the other."""
     first = np.cumsum(length) - length
     before, after = np.arange(length.sum()) - 1, np.arange(length.sum()) + 1
@@ -82,7 +83,7 @@ def _neighbours(length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _from_a_corner(points: np.ndarray, length: np.ndarray, corner_angle: float) -> tuple[np.ndarray, np.ndarray]:
     """The loops' points turned to start at a corner, or at the leftmost vertex; and which of them end an arc."""
-    before, after = _neighbours(length)
+    before, after = neighbours(length)
     came, goes = points - points[before], points[after] - points
     turning = np.arctan2(came[:, 0] * goes[:, 1] - came[:, 1] * goes[:, 0], np.sum(came * goes, axis=1))
     corner = np.abs(turning) > corner_angle
@@ -103,7 +104,7 @@ def _vertices_as_knots(points: np.ndarray, edge_length: float) -> tuple[np.ndarr
 
 def _knots(points, length, group, wanted: Callable) -> list[tuple[np.ndarray, np.ndarray, float]]:
     """`_vertices_as_knots` of all loops for a function of points and domains: the integral of 1 / wanted along them."""
-    _, after = _neighbours(length)
+    _, after = neighbours(length)
     start, end = points, points[after]
     first = np.cumsum(length) - length
     loop = np.repeat(np.arange(len(length)), length)
@@ -156,7 +157,7 @@ def _even_spacing(breaks: np.ndarray, position: np.ndarray, passed: np.ndarray, 
 
 
 def _points_at(points: np.ndarray, length: np.ndarray, loop: np.ndarray, position: np.ndarray) -> np.ndarray:
-    _, after = _neighbours(length)
+    _, after = neighbours(length)
     edge = np.floor(position).astype(np.int64)
     part = (position - edge)[:, None]
     start = edge + (np.cumsum(length) - length)[loop]
@@ -164,23 +165,22 @@ def _points_at(points: np.ndarray, length: np.ndarray, loop: np.ndarray, positio
 
 
 def _insertions(samples, points, length, loop, position, group, rounds):
-    """Given vertices to insert where the polygons meet, as loops and positions; and the loops where none is left."""
+    """Given vertices to insert where polygons meet or change sides, by loop and position; loops where none is left."""
     count = np.bincount(loop, minlength=len(length))
-    _, after = _neighbours(count)
+    _, after = neighbours(count)
     pairs = crossing_pairs(samples, samples[after], group[loop])
     bad = np.zeros(len(samples), dtype=bool)
     bad[pairs.ravel()] = True
     bad |= (_clockwise(samples, count) & (np.bincount(loop, bad, minlength=len(length)) == 0))[loop]
+    skipped = _skipped(length, loop, position)
+    bad |= _swallowing(samples, points, length, loop, skipped, np.where(np.isin(group, group[loop[bad]]), -1, group))
     edges = np.nonzero(bad)[0]
-    first = (np.cumsum(length) - length)[loop[edges]]
-    low = np.floor(position[edges]).astype(np.int64) + 1
-    end = np.where(after[edges] > edges, position[after[edges]], length[loop[edges]])
-    between = np.maximum(np.ceil(end).astype(np.int64) - low, 0)
+    low, between = (part[edges] for part in skipped)
     edge = np.repeat(np.arange(len(edges)), between)
     vertex = np.arange(len(edge)) - np.repeat(np.cumsum(between) - between, between) + low[edge]
     if rounds < _PATIENCE and len(edge):
         a, b = samples[edges][edge], samples[after[edges]][edge]
-        offset, along = points[first[edge] + vertex] - a, b - a
+        offset, along = points[vertex] - a, b - a
         distance = np.abs(along[:, 0] * offset[:, 1] - along[:, 1] * offset[:, 0])
         farthest = np.lexsort((distance, edge))[np.cumsum(between[between > 0]) - 1]
         edge, vertex = edge[farthest], vertex[farthest]
@@ -188,12 +188,53 @@ def _insertions(samples, points, length, loop, position, group, rounds):
     helped[loop[edges[edge]]] = True
     # Loops that meet help each other: only where nobody can insert anything is it hopeless.
     helped_group = np.isin(group, group[helped])
-    return loop[edges[edge]], vertex.astype(float), np.setdiff1d(loop[edges], np.nonzero(helped_group)[0])
+    to = loop[edges[edge]]
+    position = (vertex - (np.cumsum(length) - length)[to]).astype(float)
+    return to, position, np.setdiff1d(loop[edges], np.nonzero(helped_group)[0])
+
+
+def _skipped(length: np.ndarray, loop: np.ndarray, position: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Given vertices between the ends of each edge: the number of the first (n,), and how many there are (n,)."""
+    _, after = neighbours(np.bincount(loop, minlength=len(length)))
+    low = np.floor(position).astype(np.int64) + 1
+    end = np.where(after > np.arange(len(loop)), position[after], length[loop])
+    between = np.maximum(np.ceil(end).astype(np.int64) - low, 0)
+    return low + (np.cumsum(length) - length)[loop], between
+
+
+def _swallowing(samples, points, length, loop, skipped, group) -> np.ndarray:
+    """Which edges (n,) pass another loop of their group on another side than the given vertices that they skip.
+
+    That loop would be inside where it was outside, or outside where it was inside. Groups below 0 are left out.
+    """
+    bad = np.zeros(len(samples), dtype=bool)
+    first_sample = np.searchsorted(loop, np.arange(len(length)))
+    first = np.cumsum(length) - length
+    low, high = (extreme.reduceat(points, first) for extreme in (np.minimum, np.maximum))
+    places = samples[first_sample]  # a given vertex of each loop
+    shared = np.isin(group, np.flatnonzero(np.bincount(group[group >= 0]) > 1))
+    shared[shared] = np.add.reduceat(skipped[1], first_sample)[shared] > 0
+    for k in np.flatnonzero(shared):
+        others = np.flatnonzero(group == group[k])
+        others = others[np.all((places[others] > low[k]) & (places[others] < high[k]), axis=1)]
+        if len(others) == 0:
+            continue
+        mine = np.arange(first_sample[k], np.searchsorted(loop, k, side="right"))
+        before = points_inside(places[others], points[first[k] : first[k] + length[k]])
+        passed = places[others[before != points_inside(places[others], samples[mine])]]
+        if len(passed):
+            # Each is in an odd number of the pieces that edges cut off the given polygon, or add to it.
+            for edge, vertex, n, end in zip(mine, skipped[0][mine], skipped[1][mine], np.roll(mine, -1), strict=True):
+                piece = np.concatenate([samples[[end, edge]], points[vertex : vertex + n]])
+                bad[edge] = n > 0 and points_inside(passed, piece).any()
+            if not bad[mine].any():  # by rounding: so close to it is the other one
+                bad[mine] = True
+    return bad
 
 
 def _clockwise(points: np.ndarray, count: np.ndarray) -> np.ndarray:
     """Which of the simple polygons, one behind the other, run clockwise; exact, at their leftmost vertices."""
-    before, after = _neighbours(count)
+    before, after = neighbours(count)
     loop = np.repeat(np.arange(len(count)), count)
     corner = np.lexsort((points[:, 1], points[:, 0], loop))[np.cumsum(count) - count]
     return orientation(points[before[corner]], points[corner], points[after[corner]]) <= 0

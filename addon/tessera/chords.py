@@ -5,9 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from .diagonals import balanced_diagonal
+from .spacing import graded_spacing, natural_segments
 
-# Chord spacing goes from the boundary's to the target edge length by so much per unit of length.
-GRADING = 0.3
 # Polygons up to this size consider all pairs of vertices; larger ones all pairs with so many of them.
 _ALL_PAIRS = 64
 _ENDS = 32
@@ -65,23 +64,6 @@ def choose_chords(corners: np.ndarray, size: np.ndarray, edge_length: np.ndarray
     # The last resort may pass next to other vertices, where rounded new points could be on the wrong side.
     most[open_rows] = 1
     return Chords(start, end, most)
-
-
-def natural_segments(length, spacing_start, spacing_end, edge_length) -> np.ndarray:
-    """How many segments a chord wants, as a fraction: the integral of 1 / spacing by Simpson's rule."""
-    start, middle, end = (
-        graded_spacing(share * length, length, spacing_start, spacing_end, edge_length) for share in (0.0, 0.5, 1.0)
-    )
-    return length * (1 / start + 4 / middle + 1 / end) / 6
-
-
-def graded_spacing(position, length, spacing_start, spacing_end, edge_length) -> np.ndarray:
-    """Spacing at a position along a chord: the boundary's at its ends, the target (there) away from them."""
-    rise_start, rise_end = GRADING * position, GRADING * (length - position)
-    coarse = np.maximum(edge_length, np.maximum(spacing_start - rise_start, spacing_end - rise_end))
-    fine_start = np.where(spacing_start < edge_length, spacing_start + rise_start, np.inf)
-    fine_end = np.where(spacing_end < edge_length, spacing_end + rise_end, np.inf)
-    return np.minimum(coarse, np.minimum(fine_start, fine_end))
 
 
 def _prepare(corners: np.ndarray, size: np.ndarray, edge_length: np.ndarray) -> _Batch:
@@ -186,11 +168,11 @@ def _first_cost(batch: _Batch, start: np.ndarray, end: np.ndarray) -> np.ndarray
         first = (heading - batch.onward[row, slot]) % (2 * np.pi)
         second = batch.interior[row, slot] - first
         leaves_inside = (first > 1e-4) & (second > 1e-4)
-        cost = np.where(leaves_inside, cost + _end_cost(first) + _end_cost(second), np.inf)
+        cost = np.where(leaves_inside, cost + end_cost(first) + end_cost(second), np.inf)
     return cost
 
 
-def _end_cost(angle: np.ndarray) -> np.ndarray:
+def end_cost(angle: np.ndarray) -> np.ndarray:
     """Cost of an angle at the end of a chord: sharp below 60 degrees, much too sharp below 30, or reflex."""
     sharp = np.maximum(_SIXTY - angle, 0) / _THIRTY
     return sharp**2 + 4.0 * (angle < _THIRTY) + _reflex(angle)

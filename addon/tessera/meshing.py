@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import repeat
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .assembly import mean_edge_lengths, mesh_cells, wanted_edge_lengths
 from .boundary import resample_loops
-from .contour import clean_domains, clean_loop, nesting, signed_area
+from .bridges import bridge_holes
+from .contour import Nesting, clean_domains, clean_loop, nesting, signed_area
 from .division import divide
 from .errors import ContourError
 from .flips import flip_edges
@@ -42,7 +44,7 @@ def mesh(
 ) -> Mesh:
     """Mesh one domain: the planar region that closed curves bound.
 
-    loops: (k, 2) arrays, in any winding and order; by the even-odd rule outer contours (holes are not meshed yet).
+    loops: (k, 2) arrays, in any winding and order: outer contours, holes and islands in them by the even-odd rule.
     edge_length: the target, in the loops' unit. boundary: "resample" places vertices on the given polylines at the
     target edge length, keeping their corners, which turn by more than corner_angle degrees; "keep" keeps exactly the
     given vertices and adds none on the contour. flips: a last pass exchanges edges where that raises the worse quality
@@ -136,50 +138,47 @@ def mesh_domains(
         sizing, limits = None, replace(limits, longest=min(limits.longest, number))
     watch = Stopwatch()
     with watch("contours"):
-        results = [checked_domain(result, limits.longest) for result in clean_domains(domains)]
+        cleaned = clean_domains(domains)
+        nested = [nesting([] if isinstance(loops, ContourError) else loops) for loops in cleaned]
+        results = list(map(checked_domain, cleaned, nested, repeat(limits.longest)))
     with watch("sizing"):
         sound = {number: result for number, result in enumerate(results) if not isinstance(result, ContourError)}
         target, errors = prepare(sound, sizing, limits, MOST_TRIANGLES)
         results = [errors.get(number, result) for number, result in enumerate(results)]
     with watch("boundary"):
         numbers = [number for number, result in enumerate(results) if not isinstance(result, ContourError)]
-        loops = [(number, loop) for number in numbers for loop in results[number]]
-        domain = np.array([number for number, _ in loops], dtype=np.int64)
-        polygons = [loop for _, loop in loops]
-        if boundary == "resample" and polygons:
+        loops = [loop for number in numbers for loop in results[number]]
+        domain = np.repeat(numbers, [len(results[number]) for number in numbers]).astype(np.int64)
+        region, is_hole = _regions([nested[number] for number in numbers])
+        if boundary == "resample" and loops:
             spacing = limits.longest if target.constant else target
-            polygons = resample_loops(polygons, spacing, domain, limits.corner_angle)
-    if polygons:
-        vertices, triangles, owner, fallbacks = _mesh_polygons(polygons, domain, target, flips, smooth, watch)
+            loops = resample_loops(loops, spacing, domain, limits.corner_angle)
+    if loops:
+        parts = _mesh_regions(loops, region, is_hole, domain, target, flips, smooth, watch)
+        vertices, triangles, owner, fallbacks = parts
         of = domain[owner]
         fell = np.bincount(domain, fallbacks, minlength=len(results)).astype(int)
         for number, (part, elements) in zip(numbers, _parts(vertices, triangles, of, numbers), strict=True):
             if boundary == "keep":
                 warnings = long_edge_warnings(results[number], target, number)
             else:
-                warnings = lost_area_warnings(results[number], part, elements, target.most[number])
+                area = enclosed_area(results[number], nested[number])
+                warnings = lost_area_warnings(area, part, elements, target.most[number])
             results[number] = make_mesh(
                 part, elements, fallbacks=int(fell[number]), warnings=warnings, seconds=watch.seconds
             )
     return [target.errors.get(number, result) for number, result in enumerate(results)]
 
 
-def checked_domain(loops: list[np.ndarray] | ContourError, edge_length: float) -> list[np.ndarray] | ContourError:
-    """Clean loops, or the error of a domain that has holes or would have too many triangles."""
+def checked_domain(
+    loops: list[np.ndarray] | ContourError, nested: Nesting, edge_length: float
+) -> list[np.ndarray] | ContourError:
+    """Clean loops, or the error of a domain that has none or would have too many triangles."""
     if isinstance(loops, ContourError):
         return loops
     if not loops:
         return ContourError("too-few-points", "The domain has no contour. Give at least one closed loop of points.")
-    nested = nesting(loops)
-    if len(nested.holes):
-        place = tuple(map(float, loops[nested.holes[0]][0]))
-        where = f"near ({place[0]:g}, {place[1]:g})"
-        message = (
-            f"A contour lies inside another, {where}: it is a hole, and holes are not meshed yet. "
-            "Leave it out, or cut the shape into parts without holes."
-        )
-        return ContourError("hole", message, place)
-    area = sum(signed_area(loop) for loop in loops)
+    area = enclosed_area(loops, nested)
     length = sum(float(np.linalg.norm(loop - np.roll(loop, 1, axis=0), axis=1).sum()) for loop in loops)
     # Equilateral triangles, and one on each edge of the boundary: area / l² + length / l, both divided before they are
     # multiplied, so that no length is too small or too large for it.
@@ -193,6 +192,12 @@ def checked_domain(loops: list[np.ndarray] | ContourError, edge_length: float) -
         )
         return ContourError("too-many-triangles", message)
     return loops
+
+
+def enclosed_area(loops: list[np.ndarray], nested: Nesting) -> float:
+    """The area of a domain, without that of its holes; loops: counter-clockwise."""
+    areas = np.array([signed_area(loop) for loop in loops])
+    return float(areas[nested.outer].sum() - areas[nested.holes].sum())
 
 
 def long_edge_warnings(loops: list[np.ndarray], target: Target, domain: int) -> tuple[str, ...]:
@@ -210,14 +215,12 @@ def long_edge_warnings(loops: list[np.ndarray], target: Target, domain: int) -> 
     )
 
 
-def lost_area_warnings(
-    loops: list[np.ndarray], vertices: np.ndarray, triangles: np.ndarray, edge_length: float
-) -> tuple[str, ...]:
-    """A warning where the resampled boundary is too coarse for the curve's shape, or none."""
+def lost_area_warnings(area: float, vertices: np.ndarray, triangles: np.ndarray, edge_length: float) -> tuple[str, ...]:
+    """A warning where the resampled boundary is too coarse for a domain of that area, or none."""
     a, b, c = np.moveaxis(vertices[triangles], 1, 0)
     u, v = b - a, c - a
     covered = 0.5 * float(np.sum(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]))
-    changed = abs(covered / sum(signed_area(loop) for loop in loops) - 1)
+    changed = abs(covered / area - 1)
     if changed < LOST_AREA:
         return ()
     return (
@@ -226,30 +229,57 @@ def lost_area_warnings(
     )
 
 
-def _mesh_polygons(
-    polygons: list[np.ndarray], domain: np.ndarray, target: Target, flips: bool, smooth: int, watch: Stopwatch
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Mesh simple polygons: vertices (n, 2), triangles (m, 3), the polygon of each (m,), fallbacks of each polygon.
+def _regions(nested: list[Nesting]) -> tuple[np.ndarray, np.ndarray]:
+    """Of all loops of domains, one behind the other: the number of the outer contour around each (l,), and the holes.
 
-    domain: (p,) the number that the target knows each polygon's domain by.
+    An outer contour is its own; the numbers count all the loops.
+    """
+    region, is_hole, first = [], [], 0
+    for loops in nested:
+        own = np.arange(len(loops.outer) + len(loops.holes))
+        own[loops.holes] = loops.parent
+        region.append(own + first)
+        is_hole.append(np.isin(np.arange(len(own)), loops.holes))
+        first += len(own)
+    if not region:
+        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=bool)
+    return np.concatenate(region), np.concatenate(is_hole)
+
+
+def _mesh_regions(
+    loops: list[np.ndarray],
+    region: np.ndarray,
+    is_hole: np.ndarray,
+    domain: np.ndarray,
+    target: Target,
+    flips: bool,
+    smooth: int,
+    watch: Stopwatch,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Mesh what loops bound (`bridge_holes`): vertices (n, 2), triangles (m, 3), the region of each (m,), fallbacks.
+
+    domain: (l,) the number that the target knows each loop's domain by. The fallbacks are counted by region (l,), for
+    as many as there are loops.
     """
 
-    def wanted(points: np.ndarray, polygon: np.ndarray) -> np.ndarray:
-        """The target at points (n, 2) of polygons (n,)."""
-        return target(points, domain[polygon])
+    def wanted(points: np.ndarray, region: np.ndarray) -> np.ndarray:
+        """The target at points (n, 2) of regions (n,)."""
+        return target(points, domain[region])
 
     with watch("division"):
-        division = divide(polygons, target.most[domain], None if target.constant else wanted)
+        longest, varying = target.most[domain], None if target.constant else wanted
+        points, polygons = bridge_holes(loops, region, is_hole, longest, varying)
+        division = divide(points, polygons, longest, varying)
         if target.constant:
             cell_target = mean_edge_lengths(division.points, division.cells)
         else:
             cell_target = wanted_edge_lengths(division.points, division.cells, division.owner, wanted)
     vertices, triangles, cell, fallbacks = mesh_cells(division.points, division.cells, cell_target, watch)
     owner = division.owner[cell]
-    sizing = grade_from_edges(polygons, np.arange(len(polygons)), wanted)
+    sizing = grade_from_edges(loops, region, wanted)
     vertices, triangles, parent, more = refine(vertices, triangles, owner, sizing, watch)
-    counts = np.bincount(division.owner, fallbacks, minlength=len(polygons))
-    counts += np.bincount(owner, more, minlength=len(polygons))
+    counts = np.bincount(division.owner, fallbacks, minlength=len(loops))
+    counts += np.bincount(owner, more, minlength=len(loops))
     vertices, triangles, owner, again = improve(vertices, triangles, owner[parent], watch)
     counts[: len(again)] += again
     if flips:

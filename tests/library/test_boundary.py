@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tessera.boundary import resample, resample_loops
-from tessera.contour import signed_area
+from tessera.contour import nesting, signed_area
 from tessera.predicates import segments_cross
 from tests.library.polygons import LETTER_E, circle, letter_s, placed, placements, seeds, simple_polygons, spiral
 from tests.validity import on_the_loops, polygon_is_simple
@@ -75,3 +75,19 @@ def test_loops_of_one_domain_stay_apart_and_batches_do_not_matter(seed):
     for first, second in combinations(together, 2):
         a, b, c, d = first, np.roll(first, -1, axis=0), second, np.roll(second, -1, axis=0)
         assert not segments_cross(a[:, None], b[:, None], c, d).any()
+
+
+def bump(height: float) -> np.ndarray:
+    """A circle that bulges, in or out, between two of the vertices that a coarse resampling takes; no corners."""
+    angle = np.arange(2000) * 2 * np.pi / 2000
+    radius = 1 + height * np.exp(-((angle - 2) ** 2) / 0.01)
+    return radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+
+
+@pytest.mark.parametrize("edge_length", [0.2, 0.4, 0.8, 1.5])
+@pytest.mark.parametrize(("height", "at"), [(0.25, 1.17), (-0.3, 0.85)])
+def test_a_hole_stays_inside_and_an_island_outside(height, at, edge_length):
+    small = circle(12) * 0.02 + [at * np.cos(2), at * np.sin(2)]
+    for loops in ([bump(height), small], [small, bump(height)]):
+        before, after = nesting(loops), nesting(resample_loops(loops, edge_length, np.zeros(2, dtype=int)))
+        assert before.holes.tolist() == after.holes.tolist() and len(before.holes) == (height > 0)

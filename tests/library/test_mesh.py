@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import tessera
+from tessera.contour import nesting
 from tessera.meshing import checked_domain, mesh_domains
 from tests.library.polygons import LETTER_E, circle, letter_s, placed, placements, simple_polygons, star
 from tests.validity import check_mesh, polygon_area
@@ -125,7 +126,8 @@ BOW_TIE = [(0, 0), (2, 2), (2, 0), (0, 2)]
         ("zero-area", [[(0, 0), (1, 0), (2, 0)]], 0.1),
         ("self-intersection", [BOW_TIE], 0.1),
         ("crossing", [SQUARE, SQUARE + 0.5], 0.1),
-        ("hole", [SQUARE, SQUARE / 2 + 0.25], 0.1),
+        ("crossing", [SQUARE, SQUARE / 2 + [0, 0.25]], 0.1),
+        ("crossing", [SQUARE, SQUARE / 4 + 0.1, SQUARE / 4 + 0.2], 0.1),
         ("edge-length", [SQUARE], 0.0),
         ("edge-length", [SQUARE], -1.0),
         ("edge-length", [SQUARE], np.nan),
@@ -146,10 +148,11 @@ def test_bad_input(reason, loops, edge_length):
 
 @pytest.mark.parametrize("loop", [SQUARE, SQUARE * [1000, 1e-3]], ids=["square", "needle"])
 def test_the_remedy_for_too_many_triangles_is_one(loop):
-    error = checked_domain([loop], 1e-7)
+    nested = nesting([loop])
+    error = checked_domain([loop], nested, 1e-7)
     remedy = float(str(error).split("Use ")[1].split()[0])
-    assert checked_domain([loop], remedy) == [loop]
-    assert isinstance(checked_domain([loop], remedy / 1.3), tessera.ContourError)
+    assert checked_domain([loop], nested, remedy) == [loop]
+    assert isinstance(checked_domain([loop], nested, remedy / 1.3), tessera.ContourError)
 
 
 @pytest.mark.parametrize("edge_length", [1e200, np.float64(1e308), Fraction(10), np.array(10.0)])

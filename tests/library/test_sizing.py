@@ -183,6 +183,19 @@ def test_inner_edges_are_as_long_as_wanted(loop, edge_length, sizing):
     assert mesh.report.q_worst > 0.4 and mesh.report.q_mean > 0.9
 
 
+@pytest.mark.parametrize("boundary", ["resample", "keep"])
+def test_around_holes(boundary):
+    loops = [SQUARE * 4, circle(80) * 0.6 + 1.5, circle(50) * 0.4 + [2.8, 2.9], circle(30) * 0.2 + [2.8, 2.9]]
+    sizing = tessera.smallest(tessera.by_curvature(0.3), tessera.by_thickness(3))
+    mesh = tessera.mesh(loops, 0.5, sizing=sizing, boundary=boundary)
+    check_mesh(mesh.vertices, mesh.triangles, loops, keep=boundary == "keep")
+    assert mesh.report.q_mean > (0.9 if boundary == "resample" else 0.8)
+    # Between the second hole and its island, the ring is 0.2 wide.
+    middle = mesh.vertices[mesh.triangles].mean(axis=1)
+    away = np.linalg.norm(middle - [2.8, 2.9], axis=1)
+    assert np.count_nonzero((away > 0.4) & (away < 0.5)) > 25
+
+
 def test_a_constant_sizing_is_an_edge_length():
     for loop in (LETTER_E / 5, circle(100)):
         plain = tessera.mesh([loop], 0.15)
