@@ -18,6 +18,8 @@ from .sizing import Limits, Sizing, checked_lengths, parts_of
 
 # Cells of the sampling are at most so many times as large as the length wanted in them.
 _COARSEST = 2.0
+# Where it rises too steeply, they are as fine as this, so that the foot of the rise is found.
+_FINEST = 0.5
 # Cells that touch rise as fast as the function, but the way through their places is longer than the straight one.
 _DETOUR = 0.8
 # A function may fall unseen between samples, but not to less than this share of the least that was seen.
@@ -105,7 +107,8 @@ def _prepare_one(loops: list[np.ndarray], sizing: Sizing, limits: Limits, most_t
         large = samples.size > _COARSEST * samples.values
         if functions and not large.any():
             foot, top = _rises(samples, limits.slope)
-            large[top[samples.size[top] > samples.values[foot]]] = True
+            for side in (foot, top):
+                large[side[samples.size[side] > _FINEST * samples.values[foot]]] = True
         return large
 
     samples = sample_domain(loops, ungraded, too_large)
@@ -148,12 +151,11 @@ def _shape_of(given: object) -> str:
 
 def _rises(samples: Samples, slope: float) -> tuple[np.ndarray, np.ndarray]:
     """Pairs of cells that touch, between which the function rises faster than allowed: the lower and the higher."""
-    pairs = np.stack(neighbours(samples))
-    value = samples.values[pairs]
-    order = np.argsort(value, axis=0, kind="stable")
-    (foot, top), (low, high) = (np.take_along_axis(a, order, axis=0) for a in (pairs, value))
-    apart = np.linalg.norm(samples.points[foot] - samples.points[top], axis=1)
-    steep = high > low + _DETOUR * slope * apart
+    one, other = neighbours(samples)
+    rise = samples.values[other] - samples.values[one]
+    foot, top = np.where(rise > 0, one, other), np.where(rise > 0, other, one)
+    x, y = (samples.points[top] - samples.points[foot]).T
+    steep = np.abs(rise) > _DETOUR * slope * np.hypot(x, y)
     return foot[steep], top[steep]
 
 

@@ -50,7 +50,7 @@ SIZINGS = [
     tessera.by_thickness(4),
     tessera.from_values(SQUARE * 0.8 + 0.1, [0.02, 0.1, 0.05, 0.2]),
     tessera.smallest(jump, tessera.by_distance(0.01, NOSE)),
-    lambda points: 0.01 + 3 * np.abs(points[:, 0] - 0.4),
+    lambda points: 0.02 + np.abs(points[:, 0] - 0.4),
 ]
 
 
@@ -66,8 +66,8 @@ def test_the_gradation_holds_between_any_two_points(seed, sizing, gradation):
     beside = np.clip(one + wanted[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]), 0, 1)
     for other in (beside, rng.random((500, 2))):
         apart = np.linalg.norm(other - one, axis=1)
-        # At the foot of a jump, the sampling is as fine as the elements there: one step more of the gradation.
-        assert (target(other) <= gradation * wanted + 1.1 * np.log(gradation) * apart).all()
+        # Where a function jumps, samples lie half an element apart.
+        assert (target(other) <= 1.25 * wanted + 1.1 * np.log(gradation) * apart).all()
 
 
 @pytest.mark.parametrize("sizing", SIZINGS)
