@@ -25,10 +25,10 @@ def jump(points: np.ndarray) -> np.ndarray:
     return np.where(points[:, 0] + 0.3 * points[:, 1] < 0.5, 0.02, 1.0)
 
 
-def target_of(loop, sizing, edge_length=0.2, min_edge_length=None, gradation=1.3, corner_angle=32.0):
+def target_of(loop, sizing, edge_length=0.2, min_edge_length=None, gradation=1.3, most=5_000_000):
     """The graded sizing of a domain as a function of points alone."""
-    limits = checked_limits(edge_length, min_edge_length, gradation, corner_angle)
-    target, errors = prepare({0: [clean_loop(loop)]}, sizing, limits, 5_000_000)
+    limits = checked_limits(edge_length, min_edge_length, gradation, corner_angle=32.0)
+    target, errors = prepare({0: [clean_loop(loop)]}, sizing, limits, most)
     if errors:
         raise errors[0]
     return lambda points: target(points, np.zeros(len(points), dtype=np.int64))
@@ -314,20 +314,28 @@ def test_limits_that_are_none():
 
 @pytest.mark.parametrize("length", [1e-300, 1e-9, 1e-5, 3e-4])
 def test_too_many_triangles_are_seen_before_they_are_made(length):
+    asked = []
+
     def sizing(points):
         asked.append(len(points))
-        return factor * np.full(len(points), length)
+        return np.full(len(points), length)
 
-    asked, factor = [], 1
     with pytest.raises(tessera.ContourError) as error:
         tessera.mesh([SQUARE], 0.2, sizing=sizing)
     assert error.value.reason == "too-many-triangles" and error.value.place is not None and sum(asked) < 200_000
-    if length > 1e-100:
-        factor = float(str(error.value).split("Multiply it by ")[1].split()[0])
-        target_of(SQUARE, sizing)
-        factor /= 1.3
-        with pytest.raises(tessera.ContourError):
-            target_of(SQUARE, sizing)
+
+
+@pytest.mark.parametrize("sizing", [lambda p: np.full(len(p), 1e-5), lambda p: 1e-5 + 1e-4 * p[:, 0]])
+def test_the_remedy_for_too_many_triangles_is_one(sizing):
+    factor = 1.0
+    while factor < 1e4:
+        try:
+            target_of(SQUARE, lambda points, by=factor: by * sizing(points), most=20_000)
+            break
+        except tessera.ContourError as error:
+            factor *= float(str(error).split("Multiply it by ")[1].split()[0])
+    with pytest.raises(tessera.ContourError):
+        target_of(SQUARE, lambda points: factor / 1.3 * sizing(points), most=20_000)
 
 
 @settings(deadline=None, max_examples=30)
