@@ -33,7 +33,8 @@ class Outline:
 def read_outline(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Outline:
     """The closed polylines of an object, at the resolution that Blender shows.
 
-    A fill, extrusion or bevel is left out: the outline is what is meshed. Raises ContourError: "open", "not-planar",
+    A fill, extrusion or bevel is left out: the outline is what is meshed, holes and islands by the even-odd rule as in
+    Blender's own fill, but of splines of all materials together. Raises ContourError: "open", "not-planar",
     "too-few-points", "zero-area", "not-finite".
     """
     evaluated = obj.evaluated_get(depsgraph)

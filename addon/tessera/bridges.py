@@ -1,19 +1,20 @@
 """From contours with holes to simple polygons: bridges between the loops, along which the domain is cut.
 
-Each hole gets a bridge from its leftmost vertex to one farther left, and one from its rightmost to one farther right,
-on any loop or on an earlier bridge. A bridge meets no loop and no other bridge but at its ends.
+Each hole gets a bridge from its leftmost vertex to a vertex farther left, and one from its rightmost vertex to one
+farther right, of any loop or of an earlier bridge. A bridge meets no loop and no other bridge but at its ends, and x
+rises or falls strictly along it.
 
 There always is one: a ray from a hole's leftmost vertex p to the left hits an edge or an earlier bridge first at a
-point h; a is the end with the smaller x of what it hits there. Of the vertices in the triangle p, h, a, which all are
-farther left than p, p sees the one whose direction is nearest to that of the ray (and of several, the closest): what
-hid it would have an end nearer still, as it neither meets ph nor crosses ha.
+point h; a is the end with the smaller x of the segment that it hits. Of the vertices in the triangle p, h, a, which all
+are farther left than p, p sees the one whose direction is nearest to that of the ray (and of several, the closest):
+what hid it would have an end nearer still, as it can neither meet ph nor cross ha.
 
-The faces are simple polygons. From each vertex of a hole lead two ways to the outer contour, one along the leftmost
-vertices of holes and along bridges to the left, the other one alike to the right. A vertex that each way of the first
-kind must pass is farther left than the whole hole, one of the second kind farther right, or they are the hole's own
-leftmost and rightmost vertices; so no vertex blocks both. The same holds for the vertices of bridges, whose x rises
-strictly. So a domain's loops and bridges hang together whatever vertex is taken away, and then no face of them passes a
-vertex twice.
+The faces are simple polygons, because no vertex v holds a part of the domain's loops and bridges to the rest alone. Go
+from a hole to the left: along the bridge from its leftmost vertex, and on to the left end of whatever bridge that one
+ends on; from the loop there, which starts farther left, in the same way, until the outer contour is reached. Around a
+loop there are two ways from where it is entered to where it is left, so all that this way cannot avoid is farther left
+than the hole (or is its leftmost vertex), and all that the way to the right cannot avoid is farther right: v blocks one
+of them at most. So it is for a vertex within a bridge, from where the bridge itself leads to the left and to the right.
 """
 
 from __future__ import annotations
@@ -59,8 +60,8 @@ def bridge_holes(
     loops: simple counter-clockwise polygons (k, 2) that do not meet; region (m,) int: loops of one number, one of them
     the outer contour and the others its holes, bound one region; is_hole: (m,) bool. The polygons' owner is their
     region; a contour without holes is a polygon itself. edge_length, one or one for each region (m,), and target: as of
-    `division.divide`, and new vertices along a bridge are spaced as along its cuts. Takes numpy's time for O(n) a hole,
-    with n vertices around its outer contour.
+    `division.divide`, and new vertices along a bridge are spaced as along its cuts. A loop over the holes, each of which
+    takes array operations on what is near it, and one copy of all.
     """
     size = np.array([len(loop) for loop in loops], dtype=np.int64)
     first = np.cumsum(size) - size

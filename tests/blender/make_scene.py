@@ -21,6 +21,6 @@ curve("Outline", [(0, 0), (2, 0), (2, 1), (1, 0.5), (0, 1)])
 curve("Path", [(0, 3), (1, 3), (1, 4)], cyclic=False)
 curve("Bow tie", [(3, 0), (4, 1), (4, 0), (3, 1)])
 words = bpy.data.curves.new("Words", "FONT")
-words.body = "TIM"
+words.body = "TOM"
 bpy.context.scene.collection.objects.link(bpy.data.objects.new("Words", words))
 bpy.ops.wm.save_as_mainfile(filepath=sys.argv[sys.argv.index("--") + 1])

@@ -4,7 +4,7 @@ import bpy
 import pytest
 
 from addon.blender import command
-from tests.blender.drawing import SQUARE, poly_curve
+from tests.blender.drawing import SQUARE, poly_curve, text
 
 
 def test_an_object_named_twice_is_meshed_once(tmp_path):
@@ -12,6 +12,15 @@ def test_an_object_named_twice_is_meshed_once(tmp_path):
     out = tmp_path / "out.blend"
     assert command.run(["mesh", "--edge-length", "0.3", "--objects", "A", "A", "--output", str(out)]) == 0
     assert out.exists() and [obj.name for obj in bpy.data.objects if obj.type == "MESH"] == ["A Mesh"]
+
+
+def test_letters_with_holes_are_meshed(tmp_path, capsys):
+    text("ABO", name="A")
+    out = tmp_path / "out.blend"
+    assert command.run(["mesh", "--edge-length", "0.05", "--output", str(out)]) == 0
+    assert "triangles, q_worst 0." in capsys.readouterr().out and out.exists()
+    mesh = bpy.data.objects["A Mesh"].data
+    assert len(mesh.vertices) - len(mesh.edges) + len(mesh.polygons) == 3 - 4
 
 
 @pytest.mark.parametrize("output", ["", "missing/out.blend", "~nobody/out.blend"])

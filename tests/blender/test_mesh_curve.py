@@ -69,22 +69,46 @@ def test_the_first_click_needs_no_setting():
     assert 500 < len(made.data.polygons) < 3000
 
 
-def test_letters_are_one_object_with_a_piece_for_each():
-    words = text("MESH IT")
+def pieces(made):
+    """How many connected pieces a mesh has."""
+    tris, labels = triangles(made), np.arange(len(made.data.vertices))
+    for _ in range(len(labels)):
+        low = labels[tris].min(axis=1)
+        np.minimum.at(labels, tris.ravel(), np.repeat(low, 3))
+        if (labels[tris] == low[:, None]).all():
+            break
+    return len(set(labels))
+
+
+def filled_area(obj):
+    """The area that Blender itself fills."""
+    evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    area = sum(polygon.area for polygon in evaluated.to_mesh().polygons)
+    evaluated.to_mesh_clear()
+    return area
+
+
+@pytest.mark.parametrize(("body", "letters", "holes"), [("MESH IT", 6, 0), ("ABO&@8", 6, 9), ("4 %", 4, 3)])
+def test_letters_are_one_object_with_a_piece_for_each(body, letters, holes):
+    words = text(body)
     (made,) = run(edge_length=0.06)
     tris = triangles(made)
-    pieces = np.arange(len(made.data.vertices))
-    for _ in range(len(pieces)):
-        low = pieces[tris].min(axis=1)
-        np.minimum.at(pieces, tris.ravel(), np.repeat(low, 3))
-        if (pieces[tris] == low[:, None]).all():
-            break
-    assert len(set(pieces)) == 6
-    depsgraph = bpy.context.evaluated_depsgraph_get()
-    filled = words.evaluated_get(depsgraph).to_mesh()
-    expected = sum(polygon.area for polygon in filled.polygons)
-    words.evaluated_get(depsgraph).to_mesh_clear()
-    assert area(vertices(made), tris) == pytest.approx(expected, rel=0.02)
+    assert pieces(made) == letters
+    edges = np.unique(np.sort(np.concatenate([tris[:, [0, 1]], tris[:, [1, 2]], tris[:, [2, 0]]]), axis=1), axis=0)
+    assert len(made.data.vertices) - len(edges) + len(tris) == letters - holes
+    assert area(vertices(made), tris) == pytest.approx(filled_area(words), rel=0.02)
+    assert element_quality(vertices(made)[:, :2], tris).mean() > 0.9
+
+
+def test_splines_inside_each_other_are_holes_and_islands_as_blender_fills_them():
+    square = np.array(SQUARE) - 0.5
+    curve = poly_curve(*(square * size for size in (1, 5, 3, 4, 2)), star() + 4)
+    curve.data.fill_mode = "BOTH"
+    bpy.context.view_layer.update()
+    (made,) = run(edge_length=0.2)
+    assert pieces(made) == 4
+    assert area(vertices(made), triangles(made)) == pytest.approx(filled_area(curve), rel=1e-5)
+    assert area(vertices(made), triangles(made)) > 25 - 16 + 9 - 4 + 1
 
 
 def test_keep_has_the_curves_own_vertices_on_the_boundary():
@@ -324,13 +348,14 @@ def test_triangles_that_single_precision_cannot_hold_are_one_clear_report():
     refuse("single precision", edge_length=0.1)
 
 
-def test_an_empty_text_and_a_hole_are_clear_reports():
+def test_an_empty_text_is_one_clear_report():
     text("", name="Broken")
     refuse("outline", edge_length=0.2)
-    text("O", name="Broken")
-    bpy.data.objects.remove(bpy.data.objects["Broken"])
-    bpy.data.objects["Broken.001"].name = "Broken"
-    refuse("hole", edge_length=0.05)
+
+
+def test_a_hole_that_touches_its_contour_is_one_clear_report():
+    poly_curve(SQUARE, np.array(SQUARE) / 2 + (0, 0.25), name="Broken")
+    refuse("touch each other near (0, 0.25)", edge_length=0.2)
 
 
 def test_the_open_spline_is_named():
