@@ -60,8 +60,8 @@ def bridge_holes(
     loops: simple counter-clockwise polygons (k, 2) that do not meet; region (m,) int: loops of one number, one of them
     the outer contour and the others its holes, bound one region; is_hole: (m,) bool. The polygons' owner is their
     region; a contour without holes is a polygon itself. edge_length, one or one for each region (m,), and target: as of
-    `division.divide`, and new vertices along a bridge are spaced as along its cuts. A loop over the holes, each of which
-    takes array operations on what is near it, and one copy of all.
+    `division.divide`, and new vertices along a bridge are spaced as along its cuts. A loop over the holes, each of
+    which takes array operations on what is near it, and one copy of all.
     """
     size = np.array([len(loop) for loop in loops], dtype=np.int64)
     first = np.cumsum(size) - size
