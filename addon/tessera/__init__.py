@@ -11,7 +11,21 @@ from .errors import ContourError
 from .mesh import Mesh, Report
 from .meshing import mesh, mesh_contour, mesh_many
 from .quality import element_quality
+from .sizing import by_curvature, by_distance, by_thickness, from_values, smallest
 
-__all__ = ["ContourError", "Mesh", "Report", "element_quality", "mesh", "mesh_contour", "mesh_many"]
+__all__ = [
+    "ContourError",
+    "Mesh",
+    "Report",
+    "by_curvature",
+    "by_distance",
+    "by_thickness",
+    "element_quality",
+    "from_values",
+    "mesh",
+    "mesh_contour",
+    "mesh_many",
+    "smallest",
+]
 
 keep_freed_memory()

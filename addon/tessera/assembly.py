@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from .cavity import next_vertices
@@ -36,3 +38,26 @@ def mean_edge_lengths(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     contours = points[cells]
     lengths = np.linalg.norm(next_vertices(contours, count) - contours, axis=-1)
     return np.where(cells >= 0, lengths, 0).sum(axis=1) / count
+
+
+def wanted_edge_lengths(
+    points: np.ndarray, cells: np.ndarray, owner: np.ndarray, target: Callable[[np.ndarray, np.ndarray], np.ndarray]
+) -> np.ndarray:
+    """(c,) `mean_edge_lengths`, times the target inside each cell over that along its contour.
+
+    owner: (c,); target: points (n, 2) of owners (n,) -> (n,) wanted edge lengths. Inside, it is the length of as many
+    equal elements as are wanted in all.
+    """
+    count = (cells >= 0).sum(axis=1)
+    contours = points[cells]
+    after = next_vertices(contours, count)
+    real = cells >= 0
+    centre = (np.where(real[..., None], contours, 0).sum(axis=1) / count[:, None])[:, None]
+    u, v = contours - centre, after - centre
+    area = np.where(real, np.maximum(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0], 0), 0)
+    of = np.repeat(owner, cells.shape[1])
+    along = target((0.5 * (contours + after)).reshape(-1, 2), of).reshape(cells.shape)
+    inside = target(((contours + after + centre) / 3).reshape(-1, 2), of).reshape(cells.shape)
+    along = np.where(real, along, 0).sum(axis=1) / count
+    inside = np.sqrt(area.sum(axis=1) / (area / inside**2).sum(axis=1))
+    return mean_edge_lengths(points, cells) * inside / along

@@ -1,16 +1,22 @@
 """Vertices on contours at the target edge length: corners kept, even spacing between them, the polygon simple again."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from .contour import points_inside
 from .crossings import crossing_pairs
 from .predicates import orientation
+from .sampling import cut
 
 # A vertex is a corner where the contour turns by more than this; a regular polygon of 12 sides, which turns by 30
 # degrees at its vertices, is still a coarse circle.
 CORNER_ANGLE = np.radians(32.0)
+# Numbers of edges that are as close to two whole numbers are rounded down, whatever the last bit says.
+_TIE = 1e-9
+# With a sizing function, edges are looked at in pieces of at most this share of the length that is wanted there, and
+# of a loop's size.
+_PIECE, _LONGEST_PIECE = 0.5, 1 / 64
 # After so many rounds of single insertions all the given vertices between two neighbours are inserted at once.
 _PATIENCE = 12
 
@@ -21,25 +27,33 @@ def resample(loop: np.ndarray, edge_length: float) -> np.ndarray:
 
 
 def resample_loops(
-    loops: Sequence[np.ndarray], edge_length: float | np.ndarray, domain: np.ndarray | None = None
+    loops: Sequence[np.ndarray],
+    edge_length: float | np.ndarray | Callable[[np.ndarray, np.ndarray], np.ndarray],
+    domain: np.ndarray | None = None,
+    corner_angle: float = CORNER_ANGLE,
 ) -> list[np.ndarray]:
     """New vertices for simple counter-clockwise polygons (k, 2); they are simple and counter-clockwise again.
 
-    edge_length: one, or one for each loop (m,). domain (m,) int: loops of one domain, which do not meet, do not meet
-    afterwards either, and lie inside each other as before; without it each loop is a domain of its own.
+    edge_length: one, or one for each loop (m,), or a function of points (n, 2) and the domain of each (n,). domain (m,)
+    int: loops of one domain, which do not meet, do not meet afterwards either, and lie inside each other as before;
+    without it each loop is a domain of its own. corner_angle: in radians.
 
-    The vertices lie on the given polyline. Corners (turning by more than CORNER_ANGLE) stay; between two of them are
-    as many edges as come nearest to `edge_length`, equally long along the polyline. A loop without corners starts at
-    its leftmost vertex, wherever its list starts. Where even spacing would make polygons meet, or put one inside
-    another or out of it that was not, given vertices are inserted until it does not.
+    The vertices lie on the given polyline. Corners (turning by more than the corner angle) stay; between two of them
+    are as many edges as come nearest to `edge_length`, equally long along the polyline, or as long as it is there. A
+    loop without corners starts at its leftmost vertex, wherever its list starts. Where such spacing would make polygons
+    meet, or put one inside another or out of it that was not, given vertices are inserted until it does not.
     """
     length = np.array([len(loop) for loop in loops])
-    edge_length = np.broadcast_to(np.asarray(edge_length, dtype=np.float64), len(loops))
     group = np.arange(len(loops)) if domain is None else np.asarray(domain)
-    points, breaks = _from_a_corner(np.concatenate(loops), length)
+    points, breaks = _from_a_corner(np.concatenate(loops), length, corner_angle)
     # One loop after the other: running sums must not depend on what else is in the batch.
     ends = np.cumsum(length)[:-1]
-    positions = list(map(_even_spacing, np.split(points, ends), np.split(breaks, ends), edge_length))
+    if callable(edge_length):
+        knots = _knots(points, length, group, edge_length)
+    else:
+        edge_length = np.broadcast_to(np.asarray(edge_length, dtype=np.float64), len(loops))
+        knots = [_vertices_as_knots(*one) for one in zip(np.split(points, ends), edge_length, strict=True)]
+    positions = [_even_spacing(*one) for one in zip(np.split(breaks, ends), *zip(*knots, strict=True), strict=True)]
     loop, position = np.repeat(np.arange(len(loops)), [len(p) for p in positions]), np.concatenate(positions)
     rounds = 0
     while True:
@@ -67,12 +81,12 @@ def neighbours(length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return before, after
 
 
-def _from_a_corner(points: np.ndarray, length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _from_a_corner(points: np.ndarray, length: np.ndarray, corner_angle: float) -> tuple[np.ndarray, np.ndarray]:
     """The loops' points turned to start at a corner, or at the leftmost vertex; and which of them end an arc."""
     before, after = neighbours(length)
     came, goes = points - points[before], points[after] - points
     turning = np.arctan2(came[:, 0] * goes[:, 1] - came[:, 1] * goes[:, 0], np.sum(came * goes, axis=1))
-    corner = np.abs(turning) > CORNER_ANGLE
+    corner = np.abs(turning) > corner_angle
     loop = np.repeat(np.arange(len(length)), length)
     first = np.cumsum(length) - length
     start = np.lexsort((points[:, 1], points[:, 0], ~corner, loop))[first] - first
@@ -82,20 +96,64 @@ def _from_a_corner(points: np.ndarray, length: np.ndarray) -> tuple[np.ndarray, 
     return points, corner
 
 
-def _even_spacing(points: np.ndarray, breaks: np.ndarray, edge_length: float) -> np.ndarray:
-    """Places (n,) of one loop's new vertices: the number of the edge they lie on plus the share of it before them."""
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1))])
+def _vertices_as_knots(points: np.ndarray, edge_length: float) -> tuple[np.ndarray, np.ndarray, float]:
+    """Positions along a loop (k + 1,), the last where it closes, length up to each (k + 1,), that of an edge."""
+    length = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
+    return np.arange(len(points) + 1.0), np.concatenate([[0.0], np.cumsum(length)]), edge_length
+
+
+def _knots(points, length, group, wanted: Callable) -> list[tuple[np.ndarray, np.ndarray, float]]:
+    """`_vertices_as_knots` of all loops for a function of points and domains: the integral of 1 / wanted along them."""
+    _, after = neighbours(length)
+    start, end = points, points[after]
+    first = np.cumsum(length) - length
+    loop = np.repeat(np.arange(len(length)), length)
+    position = np.arange(len(points)) - first[loop] + 0.0
+    size = np.maximum.reduceat(np.abs(points - points[first][loop]).max(axis=1), first)
+    share = np.ones(len(points))
+    parts = np.ceil(np.linalg.norm(end - start, axis=1) / (_LONGEST_PIECE * size[loop]))
+    found = []
+    while len(start):
+        parts = np.clip(parts, 1, 8).astype(np.int64)
+        of = np.repeat(np.arange(len(parts)), parts)
+        step = np.arange(len(of)) - np.repeat(np.cumsum(parts) - parts, parts)
+        start, end = cut(start, end, parts)
+        loop, share = loop[of], (share / parts)[of]
+        position = position[of] + step * share
+        piece = np.linalg.norm(end - start, axis=1)
+        edges = piece / wanted(0.5 * (start + end), group[loop])
+        fine = edges <= _PIECE
+        found.append((loop[fine], position[fine], edges[fine]))
+        start, end, loop, share, position = (a[~fine] for a in (start, end, loop, share, position))
+        parts = np.ceil(edges[~fine] / _PIECE)
+    loop, position, edges = map(np.concatenate, zip(*found, strict=True))
+    order = np.lexsort((position, loop))
+    ends = np.cumsum(np.bincount(loop))[:-1]
+    return [
+        (np.append(at, n), np.concatenate([[0.0], np.cumsum(passed)]), 1.0)
+        for at, passed, n in zip(np.split(position[order], ends), np.split(edges[order], ends), length, strict=True)
+    ]
+
+
+def _even_spacing(breaks: np.ndarray, position: np.ndarray, passed: np.ndarray, an_edge: float) -> np.ndarray:
+    """Places (n,) of one loop's new vertices: the number of the edge they lie on plus the share of it before them.
+
+    position, passed, an_edge: as of `_vertices_as_knots`.
+    """
     arc_start = np.nonzero(breaks)[0]
-    arc_length = np.diff(along[arc_start], append=along[-1])
-    n_edges = np.maximum(np.rint(arc_length / edge_length), 1).astype(np.int64)
+    knot = np.searchsorted(position, arc_start)
+    arc_length = np.diff(passed[knot], append=passed[-1])
+    n_edges = np.maximum(np.rint(arc_length / an_edge * (1 - _TIE)), 1).astype(np.int64)
     n_edges[np.argmax(arc_length)] += max(3 - n_edges.sum(), 0)
     arc = np.repeat(np.arange(len(arc_start)), n_edges)
     step = np.arange(len(arc)) - np.repeat(np.cumsum(n_edges) - n_edges, n_edges)
-    target = along[arc_start[arc]] + step / n_edges[arc] * arc_length[arc]
-    edge = np.where(step == 0, arc_start[arc], np.searchsorted(along[:-1], target, side="right") - 1)
-    share = (target - along[edge]) / (along[edge + 1] - along[edge])
+    target = passed[knot[arc]] + step / n_edges[arc] * arc_length[arc]
+    before = np.where(step == 0, knot[arc], np.searchsorted(passed[:-1], target, side="right") - 1)
+    share = (target - passed[before]) / (passed[before + 1] - passed[before])
     # Below 1, also after the number of the edge is added.
-    return edge + np.where(step == 0, 0.0, np.clip(share, 0.0, 1.0 - 2.0**-30))
+    share = np.where(step == 0, 0.0, np.clip(share, 0.0, 1.0 - 2.0**-30))
+    places = position[before] + share * (position[before + 1] - position[before])
+    return np.minimum(places, np.nextafter(position[-1], 0))
 
 
 def _points_at(points: np.ndarray, length: np.ndarray, loop: np.ndarray, position: np.ndarray) -> np.ndarray:

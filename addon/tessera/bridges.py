@@ -19,8 +19,9 @@ of them at most. So it is for a vertex within a bridge, from where the bridge it
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -30,7 +31,7 @@ from .division import Polygons
 from .faces import find_faces
 from .nearby import Boxes
 from .predicates import segments_cross
-from .spacing import graded_spacing, natural_segments, points_between
+from .spacing import Target, graded_spacing, natural_segments, points_between, wanted_along
 
 # A bridge is looked for within so many spacings of its start at first; and so many of the closest vertices at a time.
 _NEAR = 8.0
@@ -48,14 +49,19 @@ class _Net:
 
 
 def bridge_holes(
-    loops: Sequence[np.ndarray], region: np.ndarray, is_hole: np.ndarray, edge_length: float
+    loops: Sequence[np.ndarray],
+    region: np.ndarray,
+    is_hole: np.ndarray,
+    edge_length: float | np.ndarray,
+    target: Target | None = None,
 ) -> tuple[np.ndarray, Polygons]:
     """Points (p, 2), the loops' first and in their order, and the polygons of them that tile the regions.
 
     loops: simple counter-clockwise polygons (k, 2) that do not meet; region (m,) int: loops of one number, one of them
     the outer contour and the others its holes, bound one region; is_hole: (m,) bool. The polygons' owner is their
-    region; a contour without holes is a polygon itself. New vertices along a bridge are spaced as along a cut of
-    `division`. A loop over the holes, each of which takes array operations on what is near it, and one copy of all.
+    region; a contour without holes is a polygon itself. edge_length, one or one for each region (m,), and target: as of
+    `division.divide`, and new vertices along a bridge are spaced as along its cuts. A loop over the holes, each of
+    which takes array operations on what is near it, and one copy of all.
     """
     size = np.array([len(loop) for loop in loops], dtype=np.int64)
     first = np.cumsum(size) - size
@@ -66,10 +72,13 @@ def bridge_holes(
     following = np.where(np.repeat(is_hole, size), before, after)
     tails, heads = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
     n_points = len(points[0])
+    edge_length = np.broadcast_to(np.asarray(edge_length, dtype=np.float64), len(loops))
     for number in np.unique(region[is_hole]):
         mine = np.flatnonzero(region == number)
         own = np.concatenate([np.arange(first[k], first[k] + size[k]) for k in mine])
-        added, tail, head = _bridges(points[0][own], size[mine], is_hole[mine], edge_length)
+        longest = float(edge_length[number])
+        wanted = partial(_wanted_between, target, number, longest)
+        added, tail, head = _bridges(points[0][own], size[mine], is_hole[mine], longest, wanted)
         own = np.concatenate([own, n_points + np.arange(len(added))])
         points.append(added)
         of.append(np.full(len(added), number))
@@ -81,21 +90,28 @@ def bridge_holes(
     return points, Polygons(corners, count, of[corners[np.cumsum(count) - count]])
 
 
+def _wanted_between(target: Target | None, region: int, longest: float, turned: float, ends: np.ndarray) -> np.ndarray:
+    """The target of a region along a cut from ends[0] to ends[1], times `turned` (1 or -1): (1, 1) or (1, steps)."""
+    if target is None:
+        return np.array([[longest]])
+    return wanted_along(turned * ends[:1], turned * ends[1:], np.array([region]), target)
+
+
 def _bridges(
-    points: np.ndarray, size: np.ndarray, is_hole: np.ndarray, edge_length: float
+    points: np.ndarray, size: np.ndarray, is_hole: np.ndarray, edge_length: float, wanted: Callable
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Bridges of one region: the points to add (k, 2), and the bridges' segments by the numbers of their ends (s,)."""
     before, after = neighbours(size)
     lengths = np.linalg.norm(points[after] - points, axis=1)
     net = _Net(points, 0.5 * (lengths + lengths[before]), np.arange(len(points)), after)
     loop = np.repeat(np.arange(len(size)), size)
-    for _ in ("to the left", "to the right"):
+    for turned in (1.0, -1.0):  # to the left, to the right
         boxes = Boxes(*_boxes(net.points, net.start, net.end))
         # The leftmost (then lowest) vertex of each hole, from left to right.
         x, y = net.points[: len(loop)].T
         tips = np.lexsort((y, x, loop))[(np.cumsum(size) - size)[is_hole]]
         for tip in tips[np.lexsort((y[tips], x[tips]))]:
-            net = _with_bridge(net, boxes, tip, edge_length)
+            net = _with_bridge(net, boxes, tip, edge_length, partial(wanted, turned))
         # Half a turn, which is exact: what is to the right then lies to the left.
         net = _Net(-net.points, net.spacing, net.start, net.end)
     return net.points[len(points) :], net.start[len(points) :], net.end[len(points) :]
@@ -106,7 +122,7 @@ def _boxes(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> tuple[np.n
     return np.minimum(points[start], points[end]), np.maximum(points[start], points[end])
 
 
-def _with_bridge(net: _Net, boxes: Boxes, tip: int, edge_length: float) -> _Net:
+def _with_bridge(net: _Net, boxes: Boxes, tip: int, edge_length: float, wanted: Callable) -> _Net:
     """The net with a bridge from vertex `tip` to the left, if it has none; boxes: of the segments, and then of more."""
     points, here = net.points, net.points[tip]
     reach, largest = _NEAR * max(net.spacing[tip], edge_length), 2 * boxes.extent
@@ -124,7 +140,7 @@ def _with_bridge(net: _Net, boxes: Boxes, tip: int, edge_length: float) -> _Net:
             raise AssertionError("a hole's leftmost vertex sees one farther left")
         reach *= 2
     goal = seen[np.argmin(_costs(around, tip, seen, near, edge_length))]
-    added = _points_on(around, tip, goal, near, edge_length)
+    added = _points_on(around, tip, goal, near, wanted)
     numbers = np.concatenate([[tip], len(points) + np.arange(len(added)), [goal]])
     path = np.concatenate([points[[tip]], added, points[[goal]]])
     boxes.add(*_boxes(path, np.arange(len(path) - 1), np.arange(1, len(path))))
@@ -201,15 +217,12 @@ def _gaps(net: _Net, vertex: np.ndarray, toward: np.ndarray) -> tuple[np.ndarray
     return np.minimum(*left), np.minimum(*right)
 
 
-def _points_on(net: _Net, tip: int, goal: int, near: np.ndarray, edge_length: float) -> np.ndarray:
+def _points_on(net: _Net, tip: int, goal: int, near: np.ndarray, wanted: Callable) -> np.ndarray:
     """The new vertices (k, 2) of the bridge from `tip` to `goal`; none where, rounded, they could spoil it."""
     ends = net.points[[tip, goal]]
     spacing = net.spacing[[tip, goal]]
-    natural = natural_segments(np.linalg.norm(ends[1] - ends[0]), *spacing, edge_length)
-    n_segments = np.maximum(np.rint(natural), 1).astype(np.int64)
-    added = points_between(
-        ends[:1], ends[1:], spacing[:1], spacing[1:], np.array([n_segments]), np.array([float(edge_length)])
-    )
+    most = np.array([np.iinfo(np.int64).max])
+    _, added = points_between(ends[:1], ends[1:], spacing[:1], spacing[1:], most, wanted(ends))
     added[:, 1] = np.clip(added[:, 1], ends[:, 1].min(), ends[:, 1].max())
     path = np.concatenate([ends[:1], added, ends[1:]])
     monotonous = (np.diff(path[:, 0]) < 0).all()

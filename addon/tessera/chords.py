@@ -20,11 +20,11 @@ _SIXTY, _THIRTY = np.pi / 3, np.pi / 6
 
 @dataclass(frozen=True)
 class Chords:
-    """A chord for each of P polygons, from vertex slot `start` to `end` > start, in `n_segments` parts; all (P,)."""
+    """A chord for each of P polygons, from vertex slot `start` to `end` > start, in at most `most` parts; all (P,)."""
 
     start: np.ndarray
     end: np.ndarray
-    n_segments: np.ndarray
+    most: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -59,15 +59,11 @@ def choose_chords(corners: np.ndarray, size: np.ndarray, edge_length: np.ndarray
     for row in open_rows:  # no Python loop in ordinary cases
         start[row], end[row] = balanced_diagonal(corners[row, : size[row]])
     start, end = np.minimum(start, end), np.maximum(start, end)
-    rows = np.arange(len(size))
-    length = np.linalg.norm(corners[rows, end] - corners[rows, start], axis=1)
-    natural = natural_segments(length, batch.spacing[rows, start], batch.spacing[rows, end], edge_length)
     # Fewer than either arc, so that both parts have fewer edges than the polygon.
     most = np.minimum(end - start, size - end + start) - 1
-    n_segments = np.clip(np.rint(natural), 1, most).astype(np.int64)
     # The last resort may pass next to other vertices, where rounded new points could be on the wrong side.
-    n_segments[open_rows] = 1
-    return Chords(start, end, n_segments)
+    most[open_rows] = 1
+    return Chords(start, end, most)
 
 
 def _prepare(corners: np.ndarray, size: np.ndarray, edge_length: np.ndarray) -> _Batch:

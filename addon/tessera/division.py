@@ -11,11 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from .chords import Chords, choose_chords
-from .spacing import points_between
+from .spacing import Target, points_between, wanted_along
 
 MAX_EDGES = 16
 # Vertices of polygons that are processed together: bounds the memory.
 _BLOCK = 200_000
+# In polygons of no more edges, cuts are short, and the target is asked for at every so many of their steps only.
+_FEW_EDGES, _EVERY = 64, 4
 
 
 @dataclass(frozen=True)
@@ -43,13 +45,18 @@ class Division:
     owner: np.ndarray
 
 
-def divide(points: np.ndarray, polygons: Polygons, edge_length: float | np.ndarray) -> Division:
+def divide(
+    points: np.ndarray, polygons: Polygons, edge_length: float | np.ndarray, target: Target | None = None
+) -> Division:
     """Divide polygons of points (p, 2), spaced as wanted, into cells that are such polygons, too.
 
-    Polygons that share edges get cells that share them. edge_length: one, or one for each owner. New vertices along a
-    cut follow the spacing at its ends and go to `edge_length` away from them.
+    Polygons that share edges get cells that share them. edge_length: one, or one for each owner; target: where it is
+    not the same everywhere, and edge_length the longest. New vertices along a cut follow the spacing at its ends and go
+    to the target away from them.
     """
-    edge_length = np.broadcast_to(np.asarray(edge_length, dtype=np.float64), polygons.owner.max(initial=-1) + 1)
+    edge_length = np.asarray(edge_length, dtype=np.float64)
+    if edge_length.ndim == 0:
+        edge_length = np.broadcast_to(edge_length, polygons.owner.max(initial=-1) + 1)
     cells, cell_owner = [], []
     while len(polygons.size):
         small = polygons.size <= MAX_EDGES
@@ -58,7 +65,7 @@ def divide(points: np.ndarray, polygons: Polygons, edge_length: float | np.ndarr
         new_points, parts = [points], [Polygons(*(np.zeros(0, dtype=np.int64),) * 3)]
         n_points = len(points)
         for rows in _batches(polygons.size, ~small):
-            added, part = _cut(points, n_points, polygons, rows, edge_length)
+            added, part = _cut(points, n_points, polygons, rows, edge_length, target)
             new_points.append(added)
             parts.append(part)
             n_points += len(added)
@@ -92,17 +99,24 @@ def _padded(polygons: Polygons, rows: np.ndarray, width: int) -> np.ndarray:
     return np.where(inside, polygons.corners[np.where(inside, first[:, None] + slot, 0)], -1)
 
 
-def _cut(points: np.ndarray, n_points: int, polygons: Polygons, rows: np.ndarray, edge_length: np.ndarray):
+def _cut(
+    points: np.ndarray,
+    n_points: int,
+    polygons: Polygons,
+    rows: np.ndarray,
+    edge_length: np.ndarray,
+    target: Target | None,
+):
     """Cut the polygons `rows` in two -> points to add, numbered from n_points, and the parts."""
     corners = _padded(polygons, rows, int(_padded_width(polygons.size[rows[:1]])[0]))
     size, owner = polygons.size[rows], polygons.owner[rows]
     chords = choose_chords(points[corners], size, edge_length[owner])
-    n_new = chords.n_segments - 1
+    n_segments, added = _chord_points(points, corners, size, chords, edge_length, owner, target)
+    n_new = n_segments - 1
     first_new = n_points + np.cumsum(n_new) - n_new
-    added = _chord_points(points, corners, size, chords, edge_length[owner])
 
     forward = chords.end - chords.start
-    part_size = np.stack([forward + chords.n_segments, size - forward + chords.n_segments], axis=1).ravel()
+    part_size = np.stack([forward + n_segments, size - forward + n_segments], axis=1).ravel()
     part = np.repeat(np.arange(2 * len(rows)), part_size)
     place = np.arange(len(part)) - np.repeat(np.cumsum(part_size) - part_size, part_size)
     row, second = part // 2, part % 2 == 1
@@ -115,19 +129,17 @@ def _cut(points: np.ndarray, n_points: int, polygons: Polygons, rows: np.ndarray
     return added, Polygons(numbers, part_size, np.repeat(owner, 2))
 
 
-def _chord_points(points, corners, size, chords: Chords, edge_length: np.ndarray) -> np.ndarray:
-    """The new points of all chords, each from its start to its end, spaced by the graded spacing."""
+def _chord_points(points, corners, size, chords: Chords, edge_length, owner, target: Target | None):
+    """How many segments each chord has, and the new points of all, each chord's from its start to its end."""
     row = np.arange(len(size))
 
     def spacing_at(slot: np.ndarray) -> np.ndarray:
         before, here, after = (points[corners[row, (slot + s) % size]] for s in (-1, 0, 1))
         return 0.5 * (np.linalg.norm(here - before, axis=1) + np.linalg.norm(after - here, axis=1))
 
-    return points_between(
-        points[corners[row, chords.start]],
-        points[corners[row, chords.end]],
-        spacing_at(chords.start),
-        spacing_at(chords.end),
-        chords.n_segments,
-        edge_length,
-    )
+    start, end = points[corners[row, chords.start]], points[corners[row, chords.end]]
+    if target is None:
+        wanted = edge_length[owner, None]
+    else:
+        wanted = wanted_along(start, end, owner, target, _EVERY if corners.shape[1] <= _FEW_EDGES else 1)
+    return points_between(start, end, spacing_at(chords.start), spacing_at(chords.end), chords.most, wanted)

@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import repeat
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .assembly import mean_edge_lengths, mesh_cells
+from .assembly import mean_edge_lengths, mesh_cells, wanted_edge_lengths
 from .boundary import resample_loops
 from .bridges import bridge_holes
 from .contour import Nesting, clean_domains, clean_loop, nesting, signed_area
 from .division import divide
 from .errors import ContourError
 from .flips import flip_edges
+from .gradation import Target, prepare
 from .mesh import Mesh, make_mesh
 from .placement import MOST_INNER
 from .refinement import refine
 from .remeshing import improve
 from .scheme import LARGEST_CONTOUR, join_vertices, mesh_contours
-from .sizing import LONG, grade_from_edges
+from .sizing import LONG, FromLoops, Sizing, checked_edge_length, checked_limits, grade_from_edges, positive
 from .smoothing import smooth as move_downhill
 from .stopwatch import Stopwatch
 
@@ -32,8 +34,11 @@ def mesh(
     loops: Sequence[ArrayLike],
     edge_length: float,
     *,
-    sizing: None = None,
+    sizing: Sizing | None = None,
+    min_edge_length: float | None = None,
+    gradation: float = 1.3,
     boundary: str = "resample",
+    corner_angle: float = 32.0,
     flips: bool = False,
     smooth: int = 0,
 ) -> Mesh:
@@ -41,30 +46,43 @@ def mesh(
 
     loops: (k, 2) arrays, in any winding and order: outer contours, holes and islands in them by the even-odd rule.
     edge_length: the target, in the loops' unit. boundary: "resample" places vertices on the given polylines at the
-    target edge length, keeping their corners; "keep" keeps exactly the given vertices and adds none on the contour.
-    sizing: for later; only None is accepted. flips: a last pass exchanges edges where that raises the worse quality of
-    the two elements beside them. smooth: how often every inner vertex may move after
-    that, to better the poorest elements.
+    target edge length, keeping their corners, which turn by more than corner_angle degrees; "keep" keeps exactly the
+    given vertices and adds none on the contour. flips: a last pass exchanges edges where that raises the worse quality
+    of the two elements beside them. smooth: how often every inner vertex may move after that, to better the poorest
+    elements.
+
+    sizing: asks for shorter targets than edge_length: a number; a function that takes points (n, 2) in the domain and
+    gives lengths (n,); `by_curvature`, `by_thickness`, `by_distance`, `from_values`; or the `smallest` of several. No
+    target is shorter than min_edge_length, and from one element to the next it changes by no more than the factor
+    gradation.
 
     Raises ContourError, whose ``reason`` is a short word, for input that cannot be meshed, and a plain ValueError for
     what is no sequence of (k, 2) arrays of numbers.
     """
-    if sizing is not None:
-        raise NotImplementedError("sizing functions are not there yet: leave sizing=None for one target edge length")
-    (result,) = mesh_domains([loops], edge_length, boundary, flips, smooth)
+    wanted = sizing, min_edge_length, gradation, corner_angle
+    (result,) = mesh_domains([loops], edge_length, boundary, flips, smooth, *wanted)
     if isinstance(result, ContourError):
         raise result
     return result
 
 
 def mesh_many(
-    domains: Sequence[Sequence[ArrayLike]], edge_length: float, *, flips: bool = False, smooth: int = 0
+    domains: Sequence[Sequence[ArrayLike]],
+    edge_length: float,
+    *,
+    sizing: Sizing | None = None,
+    min_edge_length: float | None = None,
+    gradation: float = 1.3,
+    corner_angle: float = 32.0,
+    flips: bool = False,
+    smooth: int = 0,
 ) -> list[Mesh | ContourError]:
     """Mesh a batch of domains, each as `mesh` does: a Mesh, or the ContourError that it has, for each.
 
     Raises ContourError "edge-length" where no domain could be meshed at that length.
     """
-    return mesh_domains(domains, edge_length, "resample", flips, smooth)
+    wanted = sizing, min_edge_length, gradation, corner_angle
+    return mesh_domains(domains, edge_length, "resample", flips, smooth, *wanted)
 
 
 def mesh_contour(points: ArrayLike, edge_length: float, *, flips: bool = False, smooth: int = 0) -> Mesh:
@@ -100,53 +118,56 @@ def mesh_contour(points: ArrayLike, edge_length: float, *, flips: bool = False, 
     )
 
 
-def checked_edge_length(edge_length: float) -> float:
-    """The target as a float; raises ContourError "edge-length" unless it is a positive finite number."""
-    try:
-        value = float(edge_length)
-    except (TypeError, ValueError, OverflowError):
-        value = np.nan
-    if not (np.isfinite(value) and value > 0):
-        message = (
-            f"The target edge length is {edge_length}; it must be a positive number. Give one in the curve's unit."
-        )
-        raise ContourError("edge-length", message)
-    return value
-
-
 def mesh_domains(
-    domains: Sequence[Sequence[ArrayLike]], edge_length: float, boundary: str, flips: bool, smooth: int
+    domains: Sequence[Sequence[ArrayLike]],
+    edge_length: float,
+    boundary: str,
+    flips: bool,
+    smooth: int,
+    sizing: Sizing | None = None,
+    min_edge_length: float | None = None,
+    gradation: float = 1.3,
+    corner_angle: float = 32.0,
 ) -> list[Mesh | ContourError]:
     """Mesh many domains as one batch: a Mesh, or the ContourError that it has, for each."""
     if boundary not in ("resample", "keep"):
         raise ValueError(f'boundary is "resample" or "keep", not {boundary!r}')
-    edge_length = checked_edge_length(edge_length)
+    limits = checked_limits(edge_length, min_edge_length, gradation, corner_angle)
+    if sizing is not None and not callable(sizing) and not isinstance(sizing, FromLoops):
+        number = max(positive(sizing, "sizing"), limits.shortest or 0.0)
+        sizing, limits = None, replace(limits, longest=min(limits.longest, number))
     watch = Stopwatch()
     with watch("contours"):
         cleaned = clean_domains(domains)
         nested = [nesting([] if isinstance(loops, ContourError) else loops) for loops in cleaned]
-        results = list(map(checked_domain, cleaned, nested, repeat(edge_length)))
+        results = list(map(checked_domain, cleaned, nested, repeat(limits.longest)))
+    with watch("sizing"):
+        sound = {number: result for number, result in enumerate(results) if not isinstance(result, ContourError)}
+        target, errors = prepare(sound, sizing, limits, MOST_TRIANGLES)
+        results = [errors.get(number, result) for number, result in enumerate(results)]
     with watch("boundary"):
         numbers = [number for number, result in enumerate(results) if not isinstance(result, ContourError)]
         loops = [loop for number in numbers for loop in results[number]]
         domain = np.repeat(numbers, [len(results[number]) for number in numbers]).astype(np.int64)
         region, is_hole = _regions([nested[number] for number in numbers])
         if boundary == "resample" and loops:
-            loops = resample_loops(loops, edge_length, domain)
+            spacing = limits.longest if target.constant else target
+            loops = resample_loops(loops, spacing, domain, limits.corner_angle)
     if loops:
-        vertices, triangles, owner, fallbacks = _mesh_regions(loops, region, is_hole, edge_length, flips, smooth, watch)
+        parts = _mesh_regions(loops, region, is_hole, domain, target, flips, smooth, watch)
+        vertices, triangles, owner, fallbacks = parts
         of = domain[owner]
         fell = np.bincount(domain, fallbacks, minlength=len(results)).astype(int)
         for number, (part, elements) in zip(numbers, _parts(vertices, triangles, of, numbers), strict=True):
             if boundary == "keep":
-                warnings = long_edge_warnings(results[number], edge_length)
+                warnings = long_edge_warnings(results[number], target, number)
             else:
                 area = enclosed_area(results[number], nested[number])
-                warnings = lost_area_warnings(area, part, elements, edge_length)
+                warnings = lost_area_warnings(area, part, elements, target.most[number])
             results[number] = make_mesh(
                 part, elements, fallbacks=int(fell[number]), warnings=warnings, seconds=watch.seconds
             )
-    return results
+    return [target.errors.get(number, result) for number, result in enumerate(results)]
 
 
 def checked_domain(
@@ -179,14 +200,17 @@ def enclosed_area(loops: list[np.ndarray], nested: Nesting) -> float:
     return float(areas[nested.outer].sum() - areas[nested.holes].sum())
 
 
-def long_edge_warnings(loops: list[np.ndarray], edge_length: float) -> tuple[str, ...]:
-    """A warning where kept boundary edges are longer than the target, or none."""
-    lengths = np.concatenate([np.linalg.norm(loop - np.roll(loop, -1, axis=0), axis=1) for loop in loops])
-    long = np.count_nonzero(lengths > LONG * edge_length)
+def long_edge_warnings(loops: list[np.ndarray], target: Target, domain: int) -> tuple[str, ...]:
+    """A warning where kept boundary edges of a domain are longer than the target, or none."""
+    start, end = np.concatenate(loops), np.concatenate([np.roll(loop, -1, axis=0) for loop in loops])
+    lengths = np.linalg.norm(end - start, axis=1)
+    wanted = target(0.5 * (start + end), np.full(len(start), domain))
+    long = np.count_nonzero(lengths > LONG * wanted)
     if not long:
         return ()
+    shortest = wanted[lengths > LONG * wanted].min()
     return (
-        f"{long} of the {len(lengths)} kept boundary edges are longer than the target edge length {edge_length:g} "
+        f"{long} of the {len(lengths)} kept boundary edges are longer than the target edge length {shortest:g} "
         f"(the longest is {lengths.max():g}), and so are the elements beside them: resample the boundary, or divide it",
     )
 
@@ -226,22 +250,33 @@ def _mesh_regions(
     loops: list[np.ndarray],
     region: np.ndarray,
     is_hole: np.ndarray,
-    edge_length: float,
+    domain: np.ndarray,
+    target: Target,
     flips: bool,
     smooth: int,
     watch: Stopwatch,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Mesh what loops bound (`bridge_holes`): vertices (n, 2), triangles (m, 3), the region of each (m,), fallbacks.
 
-    The fallbacks are counted by region (l,), for as many as there are loops.
+    domain: (l,) the number that the target knows each loop's domain by. The fallbacks are counted by region (l,), for
+    as many as there are loops.
     """
+
+    def wanted(points: np.ndarray, region: np.ndarray) -> np.ndarray:
+        """The target at points (n, 2) of regions (n,)."""
+        return target(points, domain[region])
+
     with watch("division"):
-        points, polygons = bridge_holes(loops, region, is_hole, edge_length)
-        division = divide(points, polygons, edge_length)
-        target = mean_edge_lengths(division.points, division.cells)
-    vertices, triangles, cell, fallbacks = mesh_cells(division.points, division.cells, target, watch)
+        longest, varying = target.most[domain], None if target.constant else wanted
+        points, polygons = bridge_holes(loops, region, is_hole, longest, varying)
+        division = divide(points, polygons, longest, varying)
+        if target.constant:
+            cell_target = mean_edge_lengths(division.points, division.cells)
+        else:
+            cell_target = wanted_edge_lengths(division.points, division.cells, division.owner, wanted)
+    vertices, triangles, cell, fallbacks = mesh_cells(division.points, division.cells, cell_target, watch)
     owner = division.owner[cell]
-    sizing = grade_from_edges(loops, region, edge_length)
+    sizing = grade_from_edges(loops, region, wanted)
     vertices, triangles, parent, more = refine(vertices, triangles, owner, sizing, watch)
     counts = np.bincount(division.owner, fallbacks, minlength=len(loops))
     counts += np.bincount(owner, more, minlength=len(loops))

@@ -1,9 +1,9 @@
 """Refinement of a coarse mesh by the scheme itself (paper, Algorithms 5 and 6).
 
-Every edge off the boundary that is longer than the sizing function wants is split into at most five segments; every
-element with a split edge becomes a sub-contour, meshed by the scheme at its own mean edge length; NN2 recomputes the
-places of the inner vertices; until no edge is split. (The listing's condition to split, ``|l_e - l_s| < eps``, is a
-misprint.)
+Every edge off the boundary that is longer than the sizing function wants is split into at most five segments, each as
+long as it is wanted there; every element with a split edge becomes a sub-contour, meshed by the scheme at its own mean
+edge length; NN2 recomputes the places of the inner vertices; until no edge is split. (The listing's condition to split,
+``|l_e - l_s| < eps``, is a misprint.)
 """
 
 from __future__ import annotations
@@ -21,6 +21,10 @@ from .stopwatch import Stopwatch
 MOST_SEGMENTS = 5
 # An element flatter than this keeps its edges: its sub-contour could cross itself by the rounding of inserted vertices.
 _SLIVER = 1e-6
+# Where along an edge the sizing function is asked.
+_STATIONS = np.arange(0.1, 1.0, 0.2)
+# Edges no longer than this, times the length that is wanted in the middle, are one segment: it does not change so fast.
+_SURELY_ONE = 1.1
 _MOST_ROUNDS = 20  # five to the power of it is more than any ratio of lengths
 
 Sizing = Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -40,16 +44,14 @@ def refine(
     for _ in range(_MOST_ROUNDS):
         edges, inner = inner_edges(triangles)
         ends = vertices[edges]
-        length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         home = np.zeros(len(vertices), dtype=np.int64)
         home[triangles] = domain[parent][:, None]
-        segments = np.rint(length / sizing(ends.mean(axis=1), home[edges[:, 0]])).astype(np.int64)
-        segments = np.where(
-            inner & ~_beside_slivers(vertices, triangles, edges), np.clip(segments, 1, MOST_SEGMENTS), 1
-        )
+        may_split = inner & ~_beside_slivers(vertices, triangles, edges)
+        with watch("sizing"):
+            segments, wanted = _segments(ends, may_split, home[edges[:, 0]], sizing)
         if segments.max(initial=1) == 1:
             break
-        points, cells = _sub_contours(vertices, triangles, edges, segments)
+        points, cells = _sub_contours(vertices, triangles, edges, segments, wanted)
         split = (cells[:, 3:] >= 0).any(axis=1)
         vertices, new, owner, fell = mesh_cells(points, cells[split], mean_edge_lengths(points, cells[split]), watch)
         np.add.at(fallbacks, parent[split], fell)
@@ -63,6 +65,23 @@ def refine(
     return vertices, triangles, parent, fallbacks
 
 
+def _segments(
+    ends: np.ndarray, may_split: np.ndarray, domain: np.ndarray, sizing: Sizing
+) -> tuple[np.ndarray, np.ndarray]:
+    """How many segments edges (e, 2, 2) come to (e,), and the lengths wanted at their stations (e, 5) if it is several.
+
+    may_split: (e,) bool; domain: (e,).
+    """
+    length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    segments, wanted = np.ones(len(ends), dtype=np.int64), np.ones((len(ends), len(_STATIONS)))
+    rows = np.flatnonzero(may_split)
+    rows = rows[length[rows] > _SURELY_ONE * sizing(ends[rows].mean(axis=1), domain[rows])]
+    along = ends[rows, :1] + _STATIONS[:, None] * (ends[rows, 1:] - ends[rows, :1])
+    wanted[rows] = sizing(along.reshape(-1, 2), np.repeat(domain[rows], len(_STATIONS))).reshape(-1, len(_STATIONS))
+    segments[rows] = np.clip(np.rint(length[rows] * (1 / wanted[rows]).mean(axis=1)), 1, MOST_SEGMENTS)
+    return segments, wanted
+
+
 def _beside_slivers(vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray) -> np.ndarray:
     """(e,) which edges belong to an element that is too flat to be split."""
     a, b = sides(triangles[element_quality(vertices, triangles) < _SLIVER]).T
@@ -71,15 +90,22 @@ def _beside_slivers(vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarr
 
 
 def _sub_contours(
-    vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray, segments: np.ndarray
+    vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray, segments: np.ndarray, wanted: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Insert vertices on the edges: all points (p, 2), and each triangle's contour (m, 15), padded with -1."""
+    """Insert vertices on the edges: all points (p, 2), and each triangle's contour (m, 15), padded with -1.
+
+    segments: (e,) how many each edge comes to; wanted: (e, 5) lengths at `_STATIONS`.
+    """
     n = len(vertices)
     edge = np.repeat(np.arange(len(edges)), segments - 1)
     first = np.cumsum(segments - 1) - (segments - 1)
     step = np.arange(len(edge)) - first[edge] + 1
     start, end = vertices[edges[edge, 0]], vertices[edges[edge, 1]]
-    inserted = start + (step / segments[edge])[:, None] * (end - start)
+    passed = np.concatenate([np.zeros((len(edges), 1)), np.cumsum(1 / wanted, axis=1)], axis=1)
+    reached = passed[edge, -1] * (step / segments[edge])
+    part = np.minimum(np.sum(passed[edge] <= reached[:, None], axis=1) - 1, len(_STATIONS) - 1)
+    share = (part + (reached - passed[edge, part]) * wanted[edge, part]) / len(_STATIONS)
+    inserted = start + share[:, None] * (end - start)
     stride = int(triangles.max()) + 1
     key = edges[:, 0] * stride + edges[:, 1]
     cells = np.full((len(triangles), 3, MOST_SEGMENTS), -1, dtype=np.int64)
