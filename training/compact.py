@@ -1,11 +1,12 @@
 """The compact form of a split: one file of half precision, for training here or on another machine.
 
-Contours and inner vertices lie one after the other without padding: about 80 bytes an example. Connection tables are
+Contours and inner vertices lie one after the other without padding: about 60 bytes an example. Connection tables are
 not in it; they are made while NN3 trains.
 """
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +23,7 @@ def pack(folder: Path, file: Path) -> None:
     for name, count in _POINTS.items():
         arrays[name] = arrays[name][np.arange(arrays[name].shape[1]) < arrays[count][:, None]]
     halves = {name: array.astype(np.float16) if array.dtype.kind == "f" else array for name, array in arrays.items()}
-    unfinished = file.with_suffix(".part")
+    unfinished = file.with_suffix(f".{os.getpid()}.part")
     with open(unfinished, "wb") as stream:
         np.savez_compressed(stream, **halves)
     unfinished.rename(file)

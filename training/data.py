@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from numba import njit
@@ -17,6 +18,7 @@ from tessera.triangulation import triangulate
 from . import configuration
 from .compact import unpack
 from .meshing import area2, delaunay, triangles
+from .provenance import fingerprint
 from .tables import connection_table
 
 
@@ -43,17 +45,24 @@ class Examples:
         return len(self.l_s)
 
 
+def placed_file(split: str) -> Path:
+    """Where NN2's own placements of a split are."""
+    return configuration.ROOT / configuration.read()["data"]["folder"] / f"{split}_placed.npz"
+
+
 def load(split: str) -> Examples:
     """All examples of a split, with NN2's own placements where they have been made."""
-    folder = configuration.ROOT / configuration.read()["data"]["folder"]
-    arrays = unpack(folder / f"{split}.npz")
+    file = configuration.ROOT / configuration.read()["data"]["folder"] / f"{split}.npz"
+    arrays = unpack(file)
     arrays = {name: arrays[name] for name in ("contour", "inner", "n_contour", "n_inner", "l_s", "kind")}
-    file = folder / f"{split}_placed.npz"
-    if file.exists():
-        with np.load(file) as placed:
-            return Examples(**arrays, placed=placed["placed"].astype(np.float64), n_placed=placed["n_placed"])
     count = len(arrays["l_s"])
-    return Examples(**arrays, placed=np.zeros((count, 1, 2)), n_placed=np.zeros(count, dtype=np.int64))
+    placed, n_placed = np.zeros((count, 1, 2)), np.zeros(count, dtype=np.int64)
+    if placed_file(split).exists():
+        with np.load(placed_file(split)) as made:
+            if str(made["examples"]) != fingerprint(file):
+                raise ValueError(f"{placed_file(split)} is of other examples: run 'python -m training.place'")
+            placed, n_placed = made["placed"].astype(np.float64), made["n_placed"]
+    return Examples(**arrays, placed=placed, n_placed=n_placed)
 
 
 def reflect(examples: Examples, chosen: np.ndarray) -> Examples:

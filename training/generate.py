@@ -14,6 +14,7 @@ import multiprocessing
 import os
 import platform
 from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 
 import numba
@@ -23,7 +24,7 @@ from tqdm import tqdm
 from . import configuration, contours, reference, running
 from .compact import pack
 from .measures import qualities
-from .provenance import code_version
+from .provenance import code_version, network_hashes
 from .teacher import Lesson, Meshed, centre, teach
 
 SETS = ("sector", "running")
@@ -94,6 +95,14 @@ def work(job: tuple[Path, tuple[int, ...], str, dict]) -> Path:
     return path
 
 
+def check_folder(folder: Path, config: dict, split: str) -> None:
+    """Refuse a folder with shards that this configuration does not make: they would be taken for its own."""
+    expected = {f"{name}-{number:05d}.npz" for name in SETS for number in range(config["shards"][split][name])}
+    for file in sorted(folder.glob("*-*.npz")):
+        if file.name not in expected or len(np.load(file)["l_s"]) != config["shard"]:
+            raise SystemExit(f"{file} is of another configuration: remove it, or change training/config.toml")
+
+
 def write_manifest(folder: Path, split: str, config: dict) -> None:
     """What is in a folder of shards, and what it was made from."""
     shards = {}
@@ -115,6 +124,7 @@ def write_manifest(folder: Path, split: str, config: dict) -> None:
         "reference": {"gmsh": reference.VERSION, "options": reference.OPTIONS},
         # The running system's contours depend on the library and its networks, too.
         "code": code_version(),
+        "networks": network_hashes(),
         "versions": {"python": platform.python_version(), "numpy": np.__version__, "numba": numba.__version__},
         "shards": shards,
     }
@@ -139,10 +149,12 @@ def main() -> None:
         for name in arguments.sets
         for number in range(config["shards"][arguments.split][name])
     ]
+    check_folder(folder, config, arguments.split)
     jobs = [job for job in jobs if not job[0].exists()]
-    with multiprocessing.get_context("spawn").Pool(arguments.processes) as pool:
-        for _ in tqdm(pool.imap_unordered(work, jobs), total=len(jobs), unit="shard"):
-            pass
+    # Raises if a process is killed, instead of waiting for it.
+    with ProcessPoolExecutor(arguments.processes, multiprocessing.get_context("spawn")) as pool:
+        for done in tqdm(as_completed([pool.submit(work, job) for job in jobs]), total=len(jobs), unit="shard"):
+            done.result()
     write_manifest(folder, arguments.split, config)
     pack(folder, folder.with_suffix(".npz"))
 

@@ -14,7 +14,8 @@ from tessera.stopwatch import Stopwatch
 
 from . import configuration
 from .contours import KINDS
-from .data import Examples, load
+from .data import Examples, load, placed_file
+from .provenance import fingerprint
 
 BATCH = 500
 
@@ -38,8 +39,10 @@ def main() -> None:
     """Place the inner vertices of validation and training examples."""
     config = configuration.read()["data"]
     for split in ("validation", "train"):
+        file = configuration.ROOT / config["folder"] / f"{split}.npz"
+        placed_file(split).unlink(missing_ok=True)  # of other examples, perhaps
         placed, n_placed = place(load(split), np.random.default_rng((config["seeds"][split], 100)))
-        np.savez(configuration.ROOT / config["folder"] / f"{split}_placed.npz", placed=placed, n_placed=n_placed)
+        np.savez(placed_file(split), placed=placed, n_placed=n_placed, examples=fingerprint(file))
 
 
 if __name__ == "__main__":

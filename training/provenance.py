@@ -4,17 +4,31 @@ from __future__ import annotations
 
 import hashlib
 import subprocess
+from pathlib import Path
+
+from tessera import networks
 
 from . import configuration
 
 
+def fingerprint(*files: Path) -> str:
+    """A hash over the contents of files, of those that are there."""
+    digest = hashlib.sha256()
+    for file in files:
+        if file.exists():
+            digest.update(hashlib.sha256(file.read_bytes()).digest())
+    return digest.hexdigest()[:16]
+
+
 def data_fingerprint() -> str:
-    """A hash over the training data's file and, where it has been made, NN2's own placements."""
+    """Of the training data's file and, where it has been made, NN2's own placements."""
     folder = configuration.ROOT / configuration.read()["data"]["folder"]
-    files = (folder / "train.npz", folder / "train_placed.npz")
-    return hashlib.sha256(b"".join(hashlib.sha256(f.read_bytes()).digest() for f in files if f.exists())).hexdigest()[
-        :16
-    ]
+    return fingerprint(folder / "train.npz", folder / "train_placed.npz")
+
+
+def network_hashes() -> dict[str, str]:
+    """Of the networks that the library uses, by file."""
+    return {file.name: fingerprint(file) for file in sorted(networks.FOLDER.glob("*.onnx"))}
 
 
 def code_version() -> str:

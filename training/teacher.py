@@ -50,6 +50,9 @@ def teach(points: np.ndarray, l_s: float, most: int = 32) -> Lesson | None:
         return None
     starts = [mesh for mesh in (reference_mesh, another) if mesh is not None]
     found = [_search(mesh.vertices, _matrix(mesh), len(points), l_s, most) for mesh in starts]
+    if len(reference_mesh.vertices) <= len(points) + most:
+        vertices, opposite = reference_mesh.vertices, _matrix(reference_mesh)
+        found.append((vertices, opposite, cost(vertices, opposite, len(points), len(vertices), l_s)))
     vertices, opposite, _ = min(found, key=lambda result: result[2])
     return Lesson(reference_mesh, Meshed(vertices, triangles(opposite, len(vertices))))
 
@@ -84,12 +87,14 @@ def _matrix(mesh: Meshed) -> np.ndarray:
 
 @njit(cache=True)
 def cost(points, opposite, n_contour, n, l_s):
-    """What a mesh lacks, 0 for equilateral elements of the target size.
+    """What a mesh lacks, 0 for equilateral elements of the target size, infinite for a mesh with inverted elements.
 
     Sizes are compared by logarithms, so that twice and half the target count alike and long contour edges, which no
     mesh can mend, do not outweigh quality.
     """
     worst, mean = qualities(points, opposite, n)
+    if worst <= 0:
+        return np.inf
     total, apart, count = 0.0, 0.0, 0
     for a in range(n):
         for b in range(n):
@@ -152,7 +157,9 @@ def _search(points, opposite, n_contour, l_s, most):
                     best, best_points, best_opposite = value, other, matrix
         if len(best_points) == len(points):
             break
-        points, opposite = best_points, best_opposite
-        improve(points, opposite, n_contour, len(points), _SWEEPS)
-        reached = cost(points, opposite, n_contour, len(points), l_s)
+        points, opposite, reached = best_points.copy(), best_opposite.copy(), best
+        improve(best_points, best_opposite, n_contour, len(best_points), _SWEEPS)
+        value = cost(best_points, best_opposite, n_contour, len(best_points), l_s)
+        if value < reached:
+            points, opposite, reached = best_points, best_opposite, value
     return points, opposite, reached

@@ -18,16 +18,17 @@ from .errors import ContourError
 from .flips import flip_edges
 from .gradation import Target, prepare
 from .mesh import Mesh, make_mesh
+from .notices import long_edge_warnings, lost_area_warnings
 from .placement import MOST_INNER
 from .refinement import refine
 from .remeshing import improve
 from .scheme import LARGEST_CONTOUR, join_vertices, mesh_contours
-from .sizing import LONG, FromLoops, Sizing, checked_edge_length, checked_limits, grade_from_edges, positive
+from .sizing import FromLoops, Sizing, checked_edge_length, checked_limits, grade_from_edges, positive
+from .smoothing import checked_steps
 from .smoothing import smooth as move_downhill
 from .stopwatch import Stopwatch
 
 MOST_TRIANGLES = 5_000_000
-LOST_AREA = 0.1  # of a curve's area, from which a coarser boundary is warned of
 
 
 def mesh(
@@ -91,7 +92,7 @@ def mesh_contour(points: ArrayLike, edge_length: float, *, flips: bool = False, 
     points: (N_C, 2); flips, smooth: as in `mesh`. The mesh's first N_C vertices are the contour's, counter-clockwise.
     Raises ContourError.
     """
-    edge_length = checked_edge_length(edge_length)
+    edge_length, smooth = checked_edge_length(edge_length), checked_steps(smooth)
     contour = clean_loop(points)
     n = len(contour)
     if n > LARGEST_CONTOUR:
@@ -107,7 +108,7 @@ def mesh_contour(points: ArrayLike, edge_length: float, *, flips: bool = False, 
     if smooth:
         with watch("smoothing"):
             vertices = move_downhill(vertices, meshes.triangles, smooth)
-    warnings = long_edge_warnings([contour], edge_length)
+    warnings = long_edge_warnings([contour], lambda places: np.full(len(places), edge_length))
     if meshes.n_inner[0] < meshes.wanted[0]:
         warnings += (
             f"{meshes.wanted[0]} inner vertices would suit the target edge length, {meshes.n_inner[0]} were placed "
@@ -132,6 +133,7 @@ def mesh_domains(
     """Mesh many domains as one batch: a Mesh, or the ContourError that it has, for each."""
     if boundary not in ("resample", "keep"):
         raise ValueError(f'boundary is "resample" or "keep", not {boundary!r}')
+    smooth = checked_steps(smooth)
     limits = checked_limits(edge_length, min_edge_length, gradation, corner_angle)
     if sizing is not None and not callable(sizing) and not isinstance(sizing, FromLoops):
         number = max(positive(sizing, "sizing"), limits.shortest or 0.0)
@@ -160,7 +162,9 @@ def mesh_domains(
         fell = np.bincount(domain, fallbacks, minlength=len(results)).astype(int)
         for number, (part, elements) in zip(numbers, _parts(vertices, triangles, of, numbers), strict=True):
             if boundary == "keep":
-                warnings = long_edge_warnings(results[number], target, number)
+                warnings = long_edge_warnings(
+                    results[number], lambda places, n=number: target(places, np.full(len(places), n))
+                )
             else:
                 area = enclosed_area(results[number], nested[number])
                 warnings = lost_area_warnings(area, part, elements, target.most[number])
@@ -198,35 +202,6 @@ def enclosed_area(loops: list[np.ndarray], nested: Nesting) -> float:
     """The area of a domain, without that of its holes; loops: counter-clockwise."""
     areas = np.array([signed_area(loop) for loop in loops])
     return float(areas[nested.outer].sum() - areas[nested.holes].sum())
-
-
-def long_edge_warnings(loops: list[np.ndarray], target: Target, domain: int) -> tuple[str, ...]:
-    """A warning where kept boundary edges of a domain are longer than the target, or none."""
-    start, end = np.concatenate(loops), np.concatenate([np.roll(loop, -1, axis=0) for loop in loops])
-    lengths = np.linalg.norm(end - start, axis=1)
-    wanted = target(0.5 * (start + end), np.full(len(start), domain))
-    long = np.count_nonzero(lengths > LONG * wanted)
-    if not long:
-        return ()
-    shortest = wanted[lengths > LONG * wanted].min()
-    return (
-        f"{long} of the {len(lengths)} kept boundary edges are longer than the target edge length {shortest:g} "
-        f"(the longest is {lengths.max():g}), and so are the elements beside them: resample the boundary, or divide it",
-    )
-
-
-def lost_area_warnings(area: float, vertices: np.ndarray, triangles: np.ndarray, edge_length: float) -> tuple[str, ...]:
-    """A warning where the resampled boundary is too coarse for a domain of that area, or none."""
-    a, b, c = np.moveaxis(vertices[triangles], 1, 0)
-    u, v = b - a, c - a
-    covered = 0.5 * float(np.sum(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]))
-    changed = abs(covered / area - 1)
-    if changed < LOST_AREA:
-        return ()
-    return (
-        f"the target edge length {edge_length:g} is too long for the curve's shape: the mesh's area differs by "
-        f"{100 * changed:.0f} %. Use a shorter one",
-    )
 
 
 def _regions(nested: list[Nesting]) -> tuple[np.ndarray, np.ndarray]:

@@ -1,8 +1,8 @@
 """Smoothing after the networks, an option: inner vertices go downhill in the sum of q^-8 of the elements around them.
 
-The sum weighs poor elements most, so the worst ones get better, which the mean of the neighbours does not see to. A
-vertex tries a few steps along the slope and takes the best; vertices that move together are never neighbours, so no
-move can spoil another and elements stay valid.
+The sum weighs poor elements most, so that the worst ones mostly get better, which the mean of the neighbours does not
+see to. A vertex tries a few steps along the slope and takes the best; vertices that move together are never neighbours,
+so no move can spoil another and elements stay valid.
 """
 
 from __future__ import annotations
@@ -20,21 +20,28 @@ _POOR = 0.1  # quality below which the energy goes on linearly
 _FLAT = 1e-9  # quality far above its rounding
 
 
+def checked_steps(steps: int) -> int:
+    """A number of steps; raises ValueError unless it is a whole number, 0 or more."""
+    if not isinstance(steps, (int, np.integer)) or steps < 0:
+        raise ValueError(f"smooth is how often every vertex may move, a whole number of 0 or more, not {steps!r}")
+    return int(steps)
+
+
 def smooth(vertices: np.ndarray, triangles: np.ndarray, steps: int, domain: np.ndarray | None = None) -> np.ndarray:
     """Better places for the vertices of meshes that are off the boundary, (n, 2); the others stay.
 
-    vertices: (n, 2) float64; triangles: (m, 3) int, counter-clockwise; steps: how often every vertex may move; domain:
-    (m,) int, of a batch: what is done to one domain's mesh does not depend on the others. Raises ValueError for a
-    negative number of steps.
+    vertices: (n, 2) float64; triangles: (m, 3) int, counter-clockwise; steps: how often every vertex may move, but for
+    those with more than 32 neighbours; domain: (m,) int, of a batch: what is done to one domain's mesh does not depend
+    on the others. Raises ValueError as `checked_steps`.
     """
-    if steps < 0:
-        raise ValueError(f"smooth is how often every vertex may move, 0 or more, not {steps}")
+    steps, vertices = checked_steps(steps), np.array(vertices, dtype=np.float64)
+    if not (steps and len(triangles)):
+        return vertices
     if domain is None:
         domain = np.zeros(len(triangles), dtype=np.int64)
     stars = find_stars(triangles, off_boundary(triangles, len(vertices)), _LARGEST_STAR)
     number = numbers_by_domain(triangles, domain, len(vertices))
     sets = [stars.rows(rows) for rows in independent_sets(stars, number)]
-    vertices = vertices.copy()
     for _ in range(steps):
         for independent in sets:
             vertices[independent.centre] = _downhill(vertices, independent)
@@ -44,18 +51,20 @@ def smooth(vertices: np.ndarray, triangles: np.ndarray, steps: int, domain: np.n
 def _downhill(vertices: np.ndarray, stars: Stars) -> np.ndarray:
     """The best places (S, 2) that the stars' centres find along the slope, or the ones that they have.
 
-    A poor element never gets worse, and none gets so flat that its sign is not sure.
+    Where a star's worst element is poor, it gets no poorer, and none gets so flat that its sign is not sure.
     """
     ring, centre = vertices[stars.ring], vertices[stars.centre]
     real = np.arange(ring.shape[1]) < stars.n_ring[:, None]
-    following = next_vertices(ring, stars.n_ring)
-    away = np.linalg.norm(ring - centre[:, None], axis=2)
-    size = _total(np.where(real, away, 0)) / stars.n_ring
-    slope = _slope(ring, following, real, centre)
-    steepness = np.linalg.norm(slope, axis=1)
+    size = _total(np.where(real, np.hypot(*np.moveaxis(ring - centre[:, None], 2, 0)), 0)) / stars.n_ring
+    # Around the centre and beside the size, so that no coordinate is too large or too small.
+    start = (ring - centre[:, None]) / size[:, None, None]
+    end = next_vertices(start, stars.n_ring)
+    slope = _slope(start, end, real)
+    steepness = np.hypot(*slope.T)
     direction = -slope * (size / np.where(steepness > 0, steepness, 1))[:, None]
     places = np.concatenate([centre[:, None], centre[:, None] + _STEPS[:, None] * direction[:, None]], axis=1)
-    quality = np.where(real[:, None], _quality(ring[:, None], following[:, None], places[:, :, None]), 1)
+    moved = (places - centre[:, None]) / size[:, None, None]
+    quality = np.where(real[:, None], _quality(start[:, None], end[:, None], moved[:, :, None]), 1)
     worst = quality.min(axis=2)
     allowed = worst >= np.clip(worst[:, :1], _FLAT, _POOR)
     allowed[:, 0] = True
@@ -81,14 +90,12 @@ def _energy(quality: np.ndarray) -> np.ndarray:
     return np.maximum(quality, _POOR) ** -8.0 + 8 * _POOR**-9.0 * np.maximum(_POOR - quality, 0)
 
 
-def _slope(a: np.ndarray, b: np.ndarray, real: np.ndarray, centre: np.ndarray) -> np.ndarray:
-    """(S, 2) the derivative of each star's energy by its centre (S, 2). a, b: (S, R, 2) the far ends of elements."""
-    c = centre[:, None]
-    u, v = a - c, b - c
+def _slope(u: np.ndarray, v: np.ndarray, real: np.ndarray) -> np.ndarray:
+    """(S, 2) the derivative of each star's energy by its centre. u, v: (S, R, 2) from there to the ends of elements."""
     squares = ((u * u).sum(-1) + (v * v).sum(-1) + ((u - v) ** 2).sum(-1))[..., None]
     squares = np.maximum(squares, 1e-300)
     double = (u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])[..., None]
-    by_area = np.stack([a[..., 1] - b[..., 1], b[..., 0] - a[..., 0]], axis=-1)
+    by_area = np.stack([u[..., 1] - v[..., 1], v[..., 0] - u[..., 0]], axis=-1)
     by_squares = -2 * (u + v)
     quality = 2 * np.sqrt(3) * double / squares
     change = 2 * np.sqrt(3) * (by_area * squares - double * by_squares) / squares**2

@@ -42,6 +42,16 @@ def test_a_vertex_finds_the_middle():
     triangles = np.array([[k, (k + 1) % 6, 6] for k in range(6)])
     np.testing.assert_allclose(smooth(vertices, triangles, 20)[6], 0, atol=0.01)
     assert np.array_equal(smooth(vertices, triangles, 0), vertices)
+    assert len(smooth(np.zeros((0, 2)), np.zeros((0, 3), dtype=int), 3)) == 0
+
+
+@pytest.mark.parametrize("scale", [1e-99, 1e-6, 1e6, 1e99])
+def test_the_scale_does_not_matter(scale):
+    vertices = np.concatenate([HEXAGON, [[0.5, 0.2]]])
+    triangles = np.array([[k, (k + 1) % 6, 6] for k in range(6)])
+    np.testing.assert_allclose(
+        smooth(scale * vertices, triangles, 3) / scale, smooth(vertices, triangles, 3), atol=1e-9
+    )
 
 
 def test_smoothing_is_an_option_of_meshing():
@@ -54,8 +64,9 @@ def test_smoothing_is_an_option_of_meshing():
         assert np.array_equal(before.triangles, after.triangles)
         assert energy(after.vertices, after.triangles) < energy(before.vertices, before.triangles)
         assert "smoothing" in after.report.seconds and "smoothing" not in before.report.seconds
-        with pytest.raises(ValueError, match="smooth"):
-            mesh(-1)
+        for steps in (-1, 1.5, None, "3"):
+            with pytest.raises(ValueError, match="smooth"):
+                mesh(steps)
     (many,) = tessera.mesh_many([[LETTER_E]], 0.31, smooth=3)
     assert np.array_equal(many.vertices, tessera.mesh([LETTER_E], 0.31, smooth=3).vertices)
     check_mesh(many.vertices, many.triangles, [LETTER_E], keep=False)

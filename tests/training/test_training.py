@@ -9,7 +9,7 @@ import torch
 from tessera.cavity import even_lengths, is_inside
 from tessera.scheme import join_vertices
 from tests.validity import check_many, check_mesh
-from training import configuration, contours, generate, measures, meshing, reference, tables, teacher
+from training import configuration, contours, generate, measures, meshing, reference, running, tables, teacher
 from training.compact import pack, unpack
 from training.data import Examples, elements_of, is_clear, levels, reflect
 from training.export import INPUTS, sample
@@ -222,3 +222,28 @@ def test_padding_does_not_matter(role):
         real = torch.arange(7) < inputs["n_inner"][:, None]
         here, there = here[real], there[:, :7][real]
     torch.testing.assert_close(here, there, atol=1e-4, rtol=1e-4)
+
+
+def test_the_teacher_s_mesh_is_valid_and_lacks_no_more_than_the_reference_s():
+    """On contours on which it once was inverted, and others."""
+    reference.start()
+    points, n_contour, l_s = running.real_contours(1500)
+    for row in [941, 973, 1419, 1452, 1453, *range(30)]:
+        n = n_contour[row]
+        lesson = teacher.teach(points[row, :n], l_s[row])
+        values = []
+        for mesh in (lesson.reference, lesson.taught):
+            assert measures.qualities(mesh.vertices, mesh.triangles)[0] > 0
+            matrix = teacher._matrix(mesh)
+            values.append(teacher.cost(mesh.vertices, matrix, n, len(mesh.vertices), l_s[row]))
+        assert values[1] <= values[0]
+
+
+def test_shards_of_another_configuration_are_refused(shard, tmp_path):
+    np.savez(tmp_path / "sector-00000.npz", **shard)
+    with pytest.raises(SystemExit, match="another configuration"):
+        generate.check_folder(tmp_path, CONFIG, "train")
+    generate.check_folder(tmp_path, CONFIG | {"shard": len(shard["l_s"])}, "train")
+    (tmp_path / "sector-00000.npz").rename(tmp_path / "sector-00777.npz")
+    with pytest.raises(SystemExit, match="another configuration"):
+        generate.check_folder(tmp_path, CONFIG | {"shard": len(shard["l_s"])}, "train")

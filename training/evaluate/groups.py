@@ -24,6 +24,11 @@ class Groups:
             return 0, np.nan
         return int(self.count[i[0], j[0]]), float(self.mean[i[0], j[0]])
 
+    def without(self, column: float) -> Groups:
+        """The same without a column."""
+        kept = self.columns != column
+        return Groups(self.rows, self.columns[kept], *(a[:, kept] for a in (self.count, self.mean, self.spread)))
+
     def worst(self, at_least: int) -> tuple[float, float, float, float] | None:
         """Row, column, mean and spread of the largest mean among cells of so many contours; None if there are none."""
         means = np.where(self.count >= at_least, self.mean, -np.inf)

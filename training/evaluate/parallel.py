@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import multiprocessing
 import time
+from concurrent.futures import ProcessPoolExecutor
 
 import numpy as np
 from tqdm import tqdm
@@ -27,17 +28,18 @@ def find_all(test: dict, seed: int, processes: int) -> dict[str, Results]:
     """
     chunk = test["chunk"]
     close, count = -(-test["close"] // chunk), -(-test["contours"] // chunk)
-    with multiprocessing.get_context("spawn").Pool(processes) as pool:
+    # Raises if a process is killed, instead of waiting for it.
+    with ProcessPoolExecutor(processes, multiprocessing.get_context("spawn")) as pool:
         others = {
-            REFINEMENT: pool.apply_async(running.refinement_contours, (seed, test["others"])),
-            REAL: pool.apply_async(running.real_contours, (test["others"],)),
+            REFINEMENT: pool.submit(running.refinement_contours, seed, test["others"]),
+            REAL: pool.submit(running.real_contours, test["others"]),
         }
-        drawn = pool.starmap(sector, [(chunk, (seed, number)) for number in range(count)], chunksize=1)
+        drawn = list(pool.map(sector, [chunk] * count, [(seed, number) for number in range(count)]))
         jobs = [(SECTOR, part, number < close, test["smooth"]) for number, part in enumerate(drawn)]
         for name, found in others.items():
-            jobs += [(name, part, True, test["smooth"]) for part in _chunks(Contours(*found.get()), chunk)]
+            jobs += [(name, part, True, test["smooth"]) for part in _chunks(Contours(*found.result()), chunk)]
         parts: dict[str, list[Results]] = {name: [] for name in (SECTOR, *others)}
-        for name, part in tqdm(pool.imap(_work, jobs), total=len(jobs), unit="chunk"):
+        for name, part in tqdm(pool.map(_work, jobs), total=len(jobs), unit="chunk"):
             parts[name].append(part)
     return {name: join(found) for name, found in parts.items()}
 

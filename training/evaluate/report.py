@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from .. import reference
+from ..provenance import code_version, network_hashes
 from .figures import STAGES, Stage
 from .goals import BINS, ENOUGH, ENOUGH_CLOSE, Goal, count_groups, error_groups
 from .groups import Groups, mean_and_spread
@@ -75,7 +76,9 @@ def _introduction(sets: dict[str, Results], test: dict, seed: int) -> str:
         "± its standard error. Groups are by number of contour edges N_C and the reference's number of inner vertices "
         f"N_I; the worst one is that among groups of at least {ENOUGH} contours ({ENOUGH_CLOSE} where the teacher is "
         "the reference). NN1's error is against the teacher's count, which it is taught. All groups, with contours and "
-        "standard errors, are in [groups.md](groups.md). Made by `make evaluate`."
+        f"standard errors, are in [groups.md](groups.md). Made by `make evaluate` at {code_version()} with "
+        + ", ".join(f"{name} {digest}" for name, digest in network_hashes().items())
+        + "."
     )
 
 
