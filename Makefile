@@ -15,7 +15,7 @@ help:
 	@echo "make test       ruff, the library's tests, the add-on's on the bpy wheel and in a real Blender"
 	@echo "make lint       ruff alone"
 	@echo "make bench      speed of the mesher beside Gmsh, and its memory: benchmarks/results/speed.md"
-	@echo "make evaluate   the shipped networks against Gmsh, by number of contour edges"
+	@echo "make evaluate   the shipped networks against Gmsh and the paper: docs/results/"
 	@echo "make wheels     fetch the pinned onnxruntime wheels into wheels/"
 	@echo "make extension  build/extension/*.zip, one for each platform"
 
