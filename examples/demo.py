@@ -92,11 +92,11 @@ def airfoil() -> list[bpy.types.Object]:
 
 
 def words() -> list[bpy.types.Object]:
-    """A text of letters without holes, in Blender's own font."""
-    data = bpy.data.curves.new("MESH IT", "FONT")
-    data.body = "MESH IT"
-    data.size = 0.84
-    return [_place(bpy.data.objects.new("MESH IT", data), (2.6, 0.45))]
+    """A text, two of its letters with holes, in Blender's own font."""
+    data = bpy.data.curves.new("DO MESH", "FONT")
+    data.body = "DO MESH"
+    data.size = 0.72
+    return [_place(bpy.data.objects.new("DO MESH", data), (2.6, 0.45))]
 
 
 def mesh(curves: list[bpy.types.Object], edge_length: float) -> list[bpy.types.Object]:

@@ -18,7 +18,7 @@ def main() -> None:
         for obj in list(bpy.data.objects):
             bpy.data.objects.remove(obj)
         data = bpy.data.curves.new("Words", "FONT")
-        data.body = "MESH IT"
+        data.body = "DO MESH"
         words = bpy.data.objects.new("Words", data)
         bpy.context.collection.objects.link(words)
         bpy.context.view_layer.objects.active = words
