@@ -19,7 +19,7 @@ from .cavities import Contours
 from .entries import BITS, quality
 from .predicates import orientation
 
-MOST_EDGES = 6
+MOST_EDGES = 8
 
 
 def close(contours: Contours) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

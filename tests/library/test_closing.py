@@ -8,11 +8,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from tessera.cavities import Contours
-from tessera.closing import MOST_EDGES, close
+from tessera.closing import MOST_EDGES, _triangulations, close
 from tessera.quality import element_quality
 from tessera.triangulation import triangulate
 from tests.library.adversaries import sector
 from tests.validity import check_many
+
+BY_BRUTE_FORCE = 6  # edges of contours whose triangulations are all tried
 
 
 def contours(polygons: list[np.ndarray]) -> Contours:
@@ -41,7 +43,7 @@ def score(polygon, triangles):
 
 
 @settings(max_examples=15, suppress_health_check=list(HealthCheck), deadline=None)
-@given(st.lists(st.tuples(st.integers(3, MOST_EDGES), st.integers(0, 2**32)), min_size=1, max_size=3))
+@given(st.lists(st.tuples(st.integers(3, BY_BRUTE_FORCE), st.integers(0, 2**32)), min_size=1, max_size=3))
 def test_the_best_triangulation_is_found(drawn):
     polygons = [sector(seed, n) for n, seed in drawn]
     triangles, row, closed = close(contours(polygons))
@@ -53,9 +55,26 @@ def test_the_best_triangulation_is_found(drawn):
         assert score(polygon, own) == pytest.approx(best, abs=2e-6)
 
 
+def test_there_are_as_many_triangulations_as_catalan_s_numbers():
+    found = [_triangulations(n)[1] for n in range(3, MOST_EDGES + 1)]
+    assert [len(members) for members in found] == [1, 2, 5, 14, 42, 132]
+    assert all(len({tuple(row) for row in members}) == len(members) for members in found)
+
+
+@settings(max_examples=30, suppress_health_check=list(HealthCheck), deadline=None)
+@given(st.lists(st.tuples(st.integers(3, MOST_EDGES), st.integers(0, 2**32)), min_size=1, max_size=8))
+def test_every_small_contour_is_meshed_validly(drawn):
+    polygons = [sector(seed, n) for n, seed in drawn]
+    triangles, row, closed = close(contours(polygons))
+    assert closed.all()
+    for number, polygon in enumerate(polygons):
+        own = triangles[row == number]
+        check_many(polygon[None], np.array([len(polygon)]), np.array([0]), own, np.zeros(len(own), int))
+
+
 def test_contours_with_inner_vertices_or_more_edges_are_left():
     polygon = sector(0, MOST_EDGES + 1)
-    triangles, row, closed = close(contours([polygon, polygon[:3]]))
+    triangles, row, closed = close(contours([polygon, np.array([[0, 0], [1, 0], [0, 1]])]))
     assert closed.tolist() == [False, True] and row.tolist() == [1] and triangles.tolist() == [[0, 1, 2]]
 
 
