@@ -213,8 +213,9 @@ def levels(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray) -> It
 
 
 def table_batch(rng: np.random.Generator, examples: Examples) -> dict[str, np.ndarray]:
-    """Contours, inner vertices and their calculated connection tables, for the examples and as many sub-contours.
+    """Contours, inner vertices and their calculated connection tables: of the recursion's levels from the first on.
 
+    As many contours as there are examples, first of all those of the first level, and as many of the others, drawn.
     ``table`` is (n, N, N + M, 2) with the padded N and M of ``contour`` and ``inner``; 0 where no element is possible.
     """
     inner, n_inner = move_batch(rng, examples)

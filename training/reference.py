@@ -27,6 +27,11 @@ def start() -> None:
         gmsh.option.setNumber(name, value)
 
 
+def keeps(points: np.ndarray, vertices: np.ndarray) -> bool:
+    """Whether a mesh's first vertices are still the contour (N_C, 2)."""
+    return len(vertices) >= len(points) and np.allclose(vertices[: len(points)], points, atol=1e-9)
+
+
 def mesh(points: np.ndarray, edge_length: float, watch: Stopwatch | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Mesh a contour at a target edge length, its edges kept whole.
 

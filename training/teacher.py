@@ -68,10 +68,11 @@ def centre(ring: np.ndarray) -> Meshed | None:
 
 
 def _start(points: np.ndarray, l_s: float) -> Meshed | None:
-    n = len(points)
     mesh = Meshed(*reference.mesh(points, l_s))
-    whole = len(mesh.vertices) >= n and np.allclose(mesh.vertices[:n], points, atol=1e-9)
-    if not whole or qualities(mesh.vertices, _matrix(mesh), len(mesh.vertices))[0] <= 0:
+    if (
+        not reference.keeps(points, mesh.vertices)
+        or qualities(mesh.vertices, _matrix(mesh), len(mesh.vertices))[0] <= 0
+    ):
         return None
     return mesh
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from .contour import points_inside
+from .contour import neighbours, points_inside
 from .crossings import crossing_pairs
 from .predicates import orientation
 from .sampling import cut
@@ -71,14 +71,6 @@ def resample_loops(
         order = np.lexsort((position, loop))
         loop, position = loop[order], position[order]
         rounds += 1
-
-
-def neighbours(length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The vertex before and after each vertex, for loops of `length` (m,) one behind the other."""
-    first = np.cumsum(length) - length
-    before, after = np.arange(length.sum()) - 1, np.arange(length.sum()) + 1
-    before[first], after[first + length - 1] = first + length - 1, first
-    return before, after
 
 
 def _from_a_corner(points: np.ndarray, length: np.ndarray, corner_angle: float) -> tuple[np.ndarray, np.ndarray]:

@@ -25,8 +25,8 @@ from functools import partial
 
 import numpy as np
 
-from .boundary import neighbours
 from .chords import end_cost
+from .contour import neighbours
 from .division import Polygons
 from .faces import find_faces
 from .nearby import Boxes

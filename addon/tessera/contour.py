@@ -32,6 +32,20 @@ def signed_area(points: np.ndarray) -> float:
     return 0.5 * float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))
 
 
+def neighbours(length: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The vertex before and after each vertex, for loops of `length` (m,) one behind the other."""
+    first = np.cumsum(length) - length
+    before, after = np.arange(length.sum()) - 1, np.arange(length.sum()) + 1
+    before[first], after[first + length - 1] = first + length - 1, first
+    return before, after
+
+
+def edges_of(loops: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """The start and the end (n, 2) of every edge of polygons (k, 2), one polygon behind the other."""
+    start = np.concatenate(loops)
+    return start, start[neighbours(np.array([len(loop) for loop in loops]))[1]]
+
+
 def clean_loop(points: ArrayLike) -> np.ndarray:
     """A closed loop of points (k, 2) as a simple counter-clockwise polygon (n, 2) float64 of the same points.
 
@@ -120,7 +134,7 @@ def _meeting_errors(results: list) -> tuple[dict[int, ContourError], bool]:
     domain = np.repeat([i for i, _ in valid], length)
     loop = np.repeat(np.arange(len(valid)), length)
     start = np.concatenate([p for _, p in valid])
-    end = start[_next_in_loop(length)]
+    end = start[neighbours(length)[1]]
     errors: dict[int, ContourError] = {}
     pairs = crossing_pairs(start, end, domain)
     for first, second in pairs[np.unique(domain[pairs[:, 0]], return_index=True)[1]]:
@@ -130,14 +144,6 @@ def _meeting_errors(results: list) -> tuple[dict[int, ContourError], bool]:
         same = loop[first] == loop[second]
         errors.setdefault(int(domain[first]), _meeting_error(same, (float(start[first, 0]), float(start[first, 1]))))
     return errors, len(pairs) <= MOST_PAIRS
-
-
-def _next_in_loop(length: np.ndarray) -> np.ndarray:
-    """For loops (m,) laid one behind the other, the number of the point that follows each point."""
-    last = np.cumsum(length) - 1
-    following = np.arange(1, length.sum() + 1)
-    following[last] = last - length + 1
-    return following
 
 
 def _repeated_points(points: np.ndarray, domain: np.ndarray) -> np.ndarray:

@@ -72,7 +72,8 @@ def _is_bluntest(a: np.ndarray, b: np.ndarray, c: np.ndarray, facet: np.ndarray)
     a, b, c: (P,) corners, the apex last, complex numbers; facet: (P,) int, ascending.
     """
     product = (a - c) * np.conj(b - c)
-    cotangent = product.real / np.maximum(np.abs(product.imag), np.finfo(float).tiny)
+    with np.errstate(over="ignore"):  # infinite is as good as large
+        cotangent = product.real / np.maximum(np.abs(product.imag), np.finfo(float).tiny)
     first = np.flatnonzero(np.diff(facet, prepend=-1))
     smallest = np.repeat(np.minimum.reduceat(cotangent, first), np.diff(first, append=len(facet)))
     return cotangent <= smallest

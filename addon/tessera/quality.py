@@ -17,3 +17,12 @@ def element_quality(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     double_area = sides[0, :, 0] * sides[1, :, 1] - sides[0, :, 1] * sides[1, :, 0]
     squared = np.einsum("sij,sij->i", sides, sides)
     return 2.0 * np.sqrt(3.0) * double_area / np.where(squared > 0, squared, 1.0)
+
+
+def quality_of_sides(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """q of triangles (...) by two sides u and v (..., 2) from one corner, of moderate lengths; negative if clockwise.
+
+    A few times as fast as that function, which looks after extreme coordinates too.
+    """
+    squares = (u * u).sum(-1) + (v * v).sum(-1) + ((u - v) ** 2).sum(-1)
+    return 2 * np.sqrt(3) * (u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]) / np.maximum(squares, 1e-300)

@@ -11,8 +11,8 @@ import numpy as np
 
 from . import networks
 from .cavity import next_vertices
-from .edges import off_boundary
-from .stars import Stars, find_stars, independent_sets, numbers_by_domain
+from .quality import quality_of_sides
+from .stars import Stars, find_independent_stars
 from .transform import superimpose
 
 LARGEST_STAR = 16
@@ -34,9 +34,7 @@ def relax(
     numbered by themselves, so that a domain is relaxed alike alone and in a batch. disturbed: (n,) bool, vertices near
     which there is something to relax; all, if not given.
     """
-    stars = find_stars(triangles, off_boundary(triangles, len(vertices)), LARGEST_STAR)
-    number = numbers_by_domain(triangles, domain, len(vertices))
-    sets = [stars.rows(rows) for rows in independent_sets(stars, number)]
+    sets = find_independent_stars(triangles, domain, len(vertices), LARGEST_STAR)
     vertices = vertices.copy()
     if disturbed is None:
         disturbed = np.ones(len(vertices), dtype=bool)
@@ -69,6 +67,5 @@ def _star_quality(ring: np.ndarray, n_ring: np.ndarray, centre: np.ndarray) -> n
     """(2, S) worst and mean quality of the elements that each centre (S, 2) forms with its ring (S, R, 2)."""
     real = np.arange(ring.shape[1]) < n_ring[:, None]
     a, b = ring - centre[:, None], next_vertices(ring, n_ring) - centre[:, None]
-    squares = (a * a).sum(-1) + (b * b).sum(-1) + ((a - b) ** 2).sum(-1)
-    quality = 2 * np.sqrt(3) * (a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]) / np.maximum(squares, 1e-300)
+    quality = quality_of_sides(a, b)
     return np.stack([np.where(real, quality, 1).min(axis=1), np.where(real, quality, 0).sum(axis=1) / n_ring])

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .contour import edges_of
+
 _ROOTS = 64  # cells along the longer side of the domain's box, before any is split
 _MOST_LEVELS = 24
 _AROUND = [(-1, -1), (-1, 0), (-1, 1), (0, -1), (0, 1), (1, -1), (1, 0), (1, 1)]
@@ -47,7 +49,7 @@ def sample_domain(
     loops: (k, 2), which bound the domain by the even-odd rule; function: (n, 2) points -> (n,); too_large: samples ->
     (n,) bool; it may raise where there are too many.
     """
-    outline = np.concatenate(loops), np.concatenate([np.roll(loop, -1, axis=0) for loop in loops])
+    outline = edges_of(loops)
     low, extent = outline[0].min(axis=0), np.ptp(outline[0], axis=0)
     size = float(extent.max()) / _ROOTS
     shape = np.clip(np.ceil(extent / size), 1, _ROOTS).astype(np.int64)

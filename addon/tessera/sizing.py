@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .cones import Places, build_cones, lowest, within
-from .contour import nesting
+from .contour import edges_of, nesting
 from .errors import ContourError
 from .thickness import thin_parts
 
@@ -32,8 +32,7 @@ def grade_from_edges(
     (n, 2) of meshes (n,) -> (n,) wanted edge lengths. A mesh knows nothing of the others' edges, wherever they are.
     Without long edges the function is the target.
     """
-    starts = np.concatenate(polygons)
-    ends = np.concatenate([np.roll(polygon, -1, axis=0) for polygon in polygons])
+    starts, ends = edges_of(polygons)
     lengths = np.linalg.norm(ends - starts, axis=1)
     of = np.repeat(owner, [len(polygon) for polygon in polygons])
     long = np.flatnonzero(lengths > LONG * target(0.5 * (starts + ends), of))
@@ -180,8 +179,7 @@ def by_thickness(elements: float = 3) -> FromLoops:
     def prepare(loops: list[np.ndarray], limits: Limits) -> list[Part]:
         holes = set(nesting(loops).holes.tolist())
         turned = [loop[::-1] if number in holes else loop for number, loop in enumerate(loops)]
-        start = np.concatenate(turned)
-        end = np.concatenate([np.roll(loop, -1, axis=0) for loop in turned])
+        start, end = edges_of(turned)
         here, there = thin_parts(start, end, elements, limits.longest, limits.shortest_found)
         across = np.linalg.norm(there - here, axis=1) / elements
         return [_places(here, there, np.maximum(across, limits.shortest_found), limits.slope)]
@@ -200,7 +198,7 @@ def by_distance(near: float, points: ArrayLike | None = None, *, reach: float | 
 
     def prepare(loops: list[np.ndarray], limits: Limits) -> list[Part]:
         if given is None:
-            start, end = np.concatenate(loops), np.concatenate([np.roll(loop, -1, axis=0) for loop in loops])
+            start, end = edges_of(loops)
         else:
             start = end = given
         slope = limits.slope

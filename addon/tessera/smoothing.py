@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from .cavity import next_vertices
-from .edges import off_boundary
-from .stars import Stars, find_stars, independent_sets, numbers_by_domain
+from .quality import quality_of_sides
+from .stars import Stars, find_independent_stars
 
 _LARGEST_STAR = 32
 # Steps along the slope that are tried, in mean edge lengths of the star.
@@ -39,9 +39,7 @@ def smooth(vertices: np.ndarray, triangles: np.ndarray, steps: int, domain: np.n
         return vertices
     if domain is None:
         domain = np.zeros(len(triangles), dtype=np.int64)
-    stars = find_stars(triangles, off_boundary(triangles, len(vertices)), _LARGEST_STAR)
-    number = numbers_by_domain(triangles, domain, len(vertices))
-    sets = [stars.rows(rows) for rows in independent_sets(stars, number)]
+    sets = find_independent_stars(triangles, domain, len(vertices), _LARGEST_STAR)
     for _ in range(steps):
         for independent in sets:
             vertices[independent.centre] = _downhill(vertices, independent)
@@ -64,7 +62,9 @@ def _downhill(vertices: np.ndarray, stars: Stars) -> np.ndarray:
     direction = -slope * (size / np.where(steepness > 0, steepness, 1))[:, None]
     places = np.concatenate([centre[:, None], centre[:, None] + _STEPS[:, None] * direction[:, None]], axis=1)
     moved = (places - centre[:, None]) / size[:, None, None]
-    quality = np.where(real[:, None], _quality(start[:, None], end[:, None], moved[:, :, None]), 1)
+    quality = np.where(
+        real[:, None], quality_of_sides(start[:, None] - moved[:, :, None], end[:, None] - moved[:, :, None]), 1
+    )
     worst = quality.min(axis=2)
     allowed = worst >= np.clip(worst[:, :1], _FLAT, _POOR)
     allowed[:, 0] = True
@@ -76,13 +76,6 @@ def _downhill(vertices: np.ndarray, stars: Stars) -> np.ndarray:
 def _total(values: np.ndarray) -> np.ndarray:
     """Sums over the last axis, one after the other, so that padding with zeros changes no last bit."""
     return np.cumsum(values, axis=-1)[..., -1]
-
-
-def _quality(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
-    """Element quality of triangles (..., 2), negative where inverted."""
-    u, v = a - c, b - c
-    squares = (u * u).sum(-1) + (v * v).sum(-1) + ((u - v) ** 2).sum(-1)
-    return 2 * np.sqrt(3) * (u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0]) / np.maximum(squares, 1e-300)
 
 
 def _energy(quality: np.ndarray) -> np.ndarray:

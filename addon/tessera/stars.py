@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .edges import off_boundary
+
 
 @dataclass(frozen=True)
 class Stars:
@@ -45,6 +47,17 @@ def find_stars(triangles: np.ndarray, free: np.ndarray, largest: int) -> Stars:
     return Stars(centre[start], ring, count)
 
 
+def find_independent_stars(triangles: np.ndarray, domain: np.ndarray, n_vertices: int, largest: int) -> list[Stars]:
+    """The stars of all vertices that are off the boundary, in sets without neighbours, for each domain as it is alone.
+
+    triangles: (m, 3) counter-clockwise; domain: (m,) int, of each triangle; stars of over ``largest`` edges are left
+    out.
+    """
+    stars = find_stars(triangles, off_boundary(triangles, n_vertices), largest)
+    number = _numbers_by_domain(triangles, domain, n_vertices)
+    return [stars.rows(rows) for rows in independent_sets(stars, number)]
+
+
 def independent_sets(stars: Stars, number: np.ndarray) -> list[np.ndarray]:
     """Rows of stars in sets, no two centres of a set neighbours; every star is in one set.
 
@@ -72,7 +85,7 @@ def independent_sets(stars: Stars, number: np.ndarray) -> list[np.ndarray]:
     return sets
 
 
-def numbers_by_domain(triangles: np.ndarray, domain: np.ndarray, n_vertices: int) -> np.ndarray:
+def _numbers_by_domain(triangles: np.ndarray, domain: np.ndarray, n_vertices: int) -> np.ndarray:
     """(n,) place of each vertex among the vertices of its domain."""
     of = np.full(n_vertices, -1)
     of[triangles] = domain[:, None]

@@ -37,6 +37,16 @@ def all_triangulations(corners: tuple[int, ...]):
             yield np.array(chosen)
 
 
+def meshed_validly(polygons: list[np.ndarray]) -> list[np.ndarray]:
+    """The elements of each polygon, checked."""
+    triangles, row, closed = close(contours(polygons))
+    assert closed.all()
+    elements = [triangles[row == number] for number in range(len(polygons))]
+    for polygon, own in zip(polygons, elements, strict=True):
+        check_many(polygon[None], np.array([len(polygon)]), np.array([0]), own, np.zeros(len(own), int))
+    return elements
+
+
 def score(polygon, triangles):
     q = element_quality(polygon, triangles)
     return q.min() + q.mean() if q.min() > 0 else -np.inf
@@ -46,11 +56,7 @@ def score(polygon, triangles):
 @given(st.lists(st.tuples(st.integers(3, BY_BRUTE_FORCE), st.integers(0, 2**32)), min_size=1, max_size=3))
 def test_the_best_triangulation_is_found(drawn):
     polygons = [sector(seed, n) for n, seed in drawn]
-    triangles, row, closed = close(contours(polygons))
-    assert closed.all()
-    for number, polygon in enumerate(polygons):
-        own = triangles[row == number]
-        check_many(polygon[None], np.array([len(polygon)]), np.array([0]), own, np.zeros(len(own), int))
+    for polygon, own in zip(polygons, meshed_validly(polygons), strict=True):
         best = max(score(polygon, found) for found in all_triangulations(range(len(polygon))))
         assert score(polygon, own) == pytest.approx(best, abs=2e-6)
 
@@ -64,12 +70,7 @@ def test_there_are_as_many_triangulations_as_catalan_s_numbers():
 @settings(max_examples=30, suppress_health_check=list(HealthCheck), deadline=None)
 @given(st.lists(st.tuples(st.integers(3, MOST_EDGES), st.integers(0, 2**32)), min_size=1, max_size=8))
 def test_every_small_contour_is_meshed_validly(drawn):
-    polygons = [sector(seed, n) for n, seed in drawn]
-    triangles, row, closed = close(contours(polygons))
-    assert closed.all()
-    for number, polygon in enumerate(polygons):
-        own = triangles[row == number]
-        check_many(polygon[None], np.array([len(polygon)]), np.array([0]), own, np.zeros(len(own), int))
+    meshed_validly([sector(seed, n) for n, seed in drawn])
 
 
 def test_contours_with_inner_vertices_or_more_edges_are_left():

@@ -33,7 +33,7 @@ def by_gmsh(contours: Contours, algorithm: int = DELAUNAY) -> Meshes:
     for row, (n, l_s) in enumerate(zip(contours.n_contour, contours.l_s, strict=True)):
         own = contours.points[row, :n]
         vertices, triangles = reference.mesh(own, l_s)
-        kept = len(vertices) >= n and np.allclose(vertices[:n], own, atol=1e-9)
+        kept = reference.keeps(own, vertices)
         found.append((np.concatenate([own, vertices[n:]]), triangles) if kept else None)
     return gather(contours, found)
 
