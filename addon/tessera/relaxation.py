@@ -12,7 +12,7 @@ import numpy as np
 from . import networks
 from .cavity import next_vertices
 from .quality import quality_of_sides
-from .stars import Stars, find_independent_stars
+from .stars import Stars, find_independent_stars, total_in_turn
 from .transform import superimpose
 
 LARGEST_STAR = 16
@@ -68,4 +68,4 @@ def _star_quality(ring: np.ndarray, n_ring: np.ndarray, centre: np.ndarray) -> n
     real = np.arange(ring.shape[1]) < n_ring[:, None]
     a, b = ring - centre[:, None], next_vertices(ring, n_ring) - centre[:, None]
     quality = quality_of_sides(a, b)
-    return np.stack([np.where(real, quality, 1).min(axis=1), np.where(real, quality, 0).sum(axis=1) / n_ring])
+    return np.stack([np.where(real, quality, 1).min(axis=1), total_in_turn(np.where(real, quality, 0)) / n_ring])

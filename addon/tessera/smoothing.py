@@ -11,7 +11,7 @@ import numpy as np
 
 from .cavity import next_vertices
 from .quality import quality_of_sides
-from .stars import Stars, find_independent_stars
+from .stars import Stars, find_independent_stars, total_in_turn
 
 _LARGEST_STAR = 32
 # Steps along the slope that are tried, in mean edge lengths of the star.
@@ -53,7 +53,7 @@ def _downhill(vertices: np.ndarray, stars: Stars) -> np.ndarray:
     """
     ring, centre = vertices[stars.ring], vertices[stars.centre]
     real = np.arange(ring.shape[1]) < stars.n_ring[:, None]
-    size = _total(np.where(real, np.hypot(*np.moveaxis(ring - centre[:, None], 2, 0)), 0)) / stars.n_ring
+    size = total_in_turn(np.where(real, np.hypot(*np.moveaxis(ring - centre[:, None], 2, 0)), 0)) / stars.n_ring
     # Around the centre and beside the size, so that no coordinate is too large or too small.
     start = (ring - centre[:, None]) / size[:, None, None]
     end = next_vertices(start, stars.n_ring)
@@ -68,14 +68,9 @@ def _downhill(vertices: np.ndarray, stars: Stars) -> np.ndarray:
     worst = quality.min(axis=2)
     allowed = worst >= np.clip(worst[:, :1], _FLAT, _POOR)
     allowed[:, 0] = True
-    energy = np.where(allowed, _total(_energy(quality) * real[:, None]), np.inf)
+    energy = np.where(allowed, total_in_turn(_energy(quality) * real[:, None]), np.inf)
     best = energy.argmin(axis=1)
     return places[np.arange(len(places)), best]
-
-
-def _total(values: np.ndarray) -> np.ndarray:
-    """Sums over the last axis, one after the other, so that padding with zeros changes no last bit."""
-    return np.cumsum(values, axis=-1)[..., -1]
 
 
 def _energy(quality: np.ndarray) -> np.ndarray:
@@ -92,4 +87,4 @@ def _slope(u: np.ndarray, v: np.ndarray, real: np.ndarray) -> np.ndarray:
     by_squares = -2 * (u + v)
     quality = 2 * np.sqrt(3) * double / squares
     change = 2 * np.sqrt(3) * (by_area * squares - double * by_squares) / squares**2
-    return _total(np.swapaxes(-8 * np.maximum(quality, _POOR) ** -9.0 * change * real[..., None], 1, 2))
+    return total_in_turn(np.swapaxes(-8 * np.maximum(quality, _POOR) ** -9.0 * change * real[..., None], 1, 2))

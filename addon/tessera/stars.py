@@ -94,3 +94,8 @@ def _numbers_by_domain(triangles: np.ndarray, domain: np.ndarray, n_vertices: in
     number = np.empty(n_vertices, dtype=np.int64)
     number[order] = np.arange(n_vertices) - first
     return number
+
+
+def total_in_turn(values: np.ndarray) -> np.ndarray:
+    """Sums over the last axis, one after the other, so that padding rings with zeros changes no last bit."""
+    return np.cumsum(values, axis=-1)[..., -1]

@@ -6,7 +6,7 @@ import pytest
 from tessera.edges import inner_edges, off_boundary
 from tessera.quality import element_quality
 from tessera.refinement import refine
-from tessera.relaxation import relax
+from tessera.relaxation import _star_quality, relax
 from tessera.stars import find_stars, independent_sets
 from tessera.stopwatch import Stopwatch
 from tests.validity import check_mesh
@@ -95,3 +95,12 @@ def test_no_refinement_where_none_is_needed():
     again = refine(vertices, triangles, np.zeros(len(triangles), int), sizing, Stopwatch())
     np.testing.assert_array_equal(again[0], vertices)
     np.testing.assert_array_equal(again[1], triangles)
+
+
+def test_the_quality_around_a_vertex_does_not_depend_on_the_padding():
+    """To the last bit: whether a move is made must not hang on the widest ring of the batch."""
+    rng = np.random.default_rng(3)
+    ring, centre = rng.normal(size=(200, 7, 2)), rng.normal(size=(200, 2))
+    n_ring = rng.integers(4, 8, 200)
+    padded = np.concatenate([ring, np.repeat(ring[:, :1], 6, axis=1)], axis=1)
+    np.testing.assert_array_equal(_star_quality(ring, n_ring, centre), _star_quality(padded, n_ring, centre))
