@@ -7,7 +7,7 @@ domain: several fit across its thin parts, and a round boundary keeps its shape.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -42,10 +42,10 @@ class Coarsening:
     target: Target
     room: Cones | None
 
-    @property
-    def top(self) -> int:
-        """The coarsest level of all."""
-        return int(self.levels.max(initial=0))
+    def of_loops(self, rows: np.ndarray) -> Coarsening:
+        """That of some loops alone, by their numbers."""
+        chosen = np.isin(np.repeat(np.arange(len(self.size)), self.size), rows)
+        return replace(self, points=self.points[chosen], size=self.size[rows], level=self.level[chosen])
 
     def loops(self, level: int) -> list[np.ndarray]:
         """The boundaries of a level, (k, 2) each."""

@@ -61,31 +61,45 @@ def mesh_by_levels(
         most = np.full(len(target.most), MOST_LEVELS)
     with watch("coarsening"):
         coarsening = coarsen(regions.loops, regions.is_hole, regions.domain, target, corner_angle, most)
-    meshes, failed = yield from within(_mesh_levels(regions, coarsening, passes, watch), 0.0, 0.9)
-    if not len(failed):
-        return meshes
-    again, loops = regions.of_domains(failed)
-    most = np.where(np.isin(np.arange(len(most)), failed), coarsening.levels - 1, most)
-    more = yield from within(mesh_by_levels(again, target, corner_angle, passes, watch, most), 0.9, 1.0)
-    stay = ~np.isin(regions.domain[meshes.region], failed)
-    fallbacks = np.where(np.isin(regions.domain, failed), 0, meshes.fallbacks)
-    fallbacks[loops] += more.fallbacks
-    return RegionMeshes(
-        np.concatenate([meshes.vertices, more.vertices]),
-        np.concatenate([meshes.triangles[stay], more.triangles + len(meshes.vertices)]),
-        np.concatenate([meshes.region[stay], loops[more.region]]),
-        fallbacks,
-    )
+    parts, done = [], 0.0
+    # Domains of as many levels together, so that each goes the same way as it would alone.
+    for number in np.unique(coarsening.levels[regions.domain]):
+        some, rows = regions.of_domains(np.flatnonzero(coarsening.levels == number))
+        end = done + 0.9 * len(rows) / len(regions.loops)
+        steps = _mesh_levels(some, coarsening.of_loops(rows), passes, watch)
+        meshes, failed = yield from within(steps, done, end)
+        parts.append((meshes, rows))
+        done = end
+        if len(failed):
+            again, rows = regions.of_domains(failed)
+            most = np.minimum(most, np.where(np.isin(np.arange(len(most)), failed), coarsening.levels - 1, most))
+            steps = mesh_by_levels(again, target, corner_angle, passes, watch, most)
+            parts.append(((yield from within(steps, done, done)), rows))
+    return _join(parts, len(regions.loops))
+
+
+def _join(parts: list[tuple[RegionMeshes, np.ndarray]], n_loops: int) -> RegionMeshes:
+    """The meshes of several parts, each with the numbers of its loops among all."""
+    fallbacks, first = np.zeros(n_loops, dtype=np.int64), 0
+    triangles, regions = [], []
+    for meshes, rows in parts:
+        triangles.append(meshes.triangles + first)
+        regions.append(rows[meshes.region])
+        fallbacks[rows] += meshes.fallbacks
+        first += len(meshes.vertices)
+    vertices = np.concatenate([meshes.vertices for meshes, _ in parts])
+    return RegionMeshes(vertices, np.concatenate(triangles), np.concatenate(regions), fallbacks)
 
 
 def _mesh_levels(
     regions: Regions, coarsening: Coarsening, passes: int, watch: Stopwatch
 ) -> Steps[tuple[RegionMeshes, np.ndarray]]:
-    """The meshes, and the domains that failed on the way and have none."""
-    top, domain = coarsening.top, regions.domain
+    """The meshes of domains that have as many levels each, and the domains that failed on the way and have none."""
+    top, domain = int(coarsening.levels[regions.domain[0]]), regions.domain
     # A level has about four times as many elements as the one before.
     ends = 0.25 ** np.arange(top, -1, -1.0)
-    meshes, failed = (yield from within(_mesh_coarse(regions, coarsening, watch), 0.0, ends[0] / 2)), []
+    meshes = yield from within(_mesh_coarse(regions, coarsening, top, watch), 0.0, ends[0] / 2)
+    failed = []
     vertices, triangles, region, fallbacks = meshes.vertices, meshes.triangles, meshes.region, meshes.fallbacks
     number = np.flatnonzero(coarsening.level >= top)
     for level in range(top, -1, -1):
@@ -99,6 +113,7 @@ def _mesh_levels(
         number = refined.number if arcs else number
         failed.append(np.unique(domain[refined.failed]))
         stay = ~np.isin(domain[region[refined.parent]], failed[-1])
+        fallbacks[np.isin(domain, failed[-1])] = 0
         triangles, region = refined.triangles[stay], region[refined.parent][stay]
         if not len(triangles):
             vertices = refined.vertices
@@ -121,13 +136,13 @@ class _Wanted:
         return self.coarsening.wanted(self.level, points, self.domain[region])
 
 
-def _mesh_coarse(regions: Regions, coarsening: Coarsening, watch: Stopwatch) -> Steps[RegionMeshes]:
+def _mesh_coarse(regions: Regions, coarsening: Coarsening, top: int, watch: Stopwatch) -> Steps[RegionMeshes]:
     """The mesh of the coarsest level, whose boundary's vertices come first."""
-    top, target = coarsening.top, coarsening.target
+    target = coarsening.target
     with watch("division"):
         wanted = _Wanted(coarsening, top, regions.domain)
-        longest = target.most[regions.domain] * 2.0 ** coarsening.levels[regions.domain]
-        varying = None if target.constant and coarsening.room is None else wanted
+        longest = target.most[regions.domain] * 2.0**top
+        varying = None if target.constant and top == 0 else wanted
         points, polygons = bridge_holes(coarsening.loops(top), regions.region, regions.is_hole, longest, varying)
         division = divide(points, polygons, longest, varying)
         if varying is None:
