@@ -1,0 +1,96 @@
+"""``python -m benchmarks.domains [--quick] [--random 2000]``: measure, print and write docs/results/domains.md."""
+
+from __future__ import annotations
+
+import argparse
+import multiprocessing
+import os
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+import numpy as np
+
+import tessera
+
+from . import pictures, report
+from .cases import Case, all_cases, target_of
+from .goals import growth_goals, quality_goals, validity_goal
+from .growth import LARGE, SIZES, Circle, measure_all
+from .invalid import Outcomes, count_invalid
+from .measures import Measures, measure
+from .meshers import OURS, Meshed, mesh_all
+
+FOLDER = Path(__file__).resolve().parents[2] / "docs" / "results"
+_NOSE, _TAIL = (-0.005, 0.12, -0.05, 0.05), (0.88, 1.005, -0.05, 0.05)
+_WINDOW = 24  # edge lengths across, of a detail
+
+Found = list[tuple[Case, dict[str, Meshed], dict[str, Measures]]]
+
+
+def main() -> None:
+    """Measure everything, print and write."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--quick", action="store_true", help=f"circles of up to {LARGE:,} triangles only")
+    parser.add_argument("--random", type=int, default=2_000, help="random domains (default: %(default)s)")
+    arguments = parser.parse_args()
+    processes = os.cpu_count() or 1
+    # First, while nothing else runs.
+    circles = measure_all(LARGE if arguments.quick else SIZES[-1])
+    found = mesh_cases(range(len(all_cases())), processes)
+    print(write(FOLDER, found, circles, count_invalid(arguments.random, processes)))
+
+
+def mesh_cases(numbers: Sequence[int], processes: int) -> Found:
+    """Some of `all_cases`, meshed and measured in several processes."""
+    cases = all_cases()
+    with ProcessPoolExecutor(processes, multiprocessing.get_context("spawn")) as pool:
+        # The last take longest.
+        parts = list(pool.map(_mesh_case, list(numbers)[::-1]))[::-1]
+    return [(cases[number], *part) for number, part in zip(numbers, parts, strict=True)]
+
+
+def _mesh_case(number: int) -> tuple[dict[str, Meshed], dict[str, Measures]]:
+    case = all_cases()[number]
+    meshes, target = mesh_all(case), target_of(case)
+    return meshes, {name: measure(mesh, target, case.left_out) for name, mesh in meshes.items()}
+
+
+def write(folder: Path, found: Found, circles: list[Circle], outcomes: Outcomes) -> str:
+    """Write the page and its pictures; returns the page's text."""
+    folder.mkdir(parents=True, exist_ok=True)
+    results = [(case, measures) for case, _, measures in found]
+    goals = [*quality_goals(results), *growth_goals(circles), validity_goal(outcomes)]
+    text = report.page(goals, results, circles, outcomes)
+    draw(folder, found)
+    pictures.draw_growth(folder / report.file_of("growth"), circles)
+    (folder / "domains.md").write_text(text + "\n")
+    return text
+
+
+def draw(folder: Path, found: Found) -> None:
+    """The pictures of all meshes."""
+    of = {kind: [meshes for case, meshes, _ in found if case.kind == kind] for kind in ("circle", "airfoil", "plate")}
+    pictures.draw_side_by_side(folder / report.file_of("circle"), of["circle"] + of["plate"])
+    pictures.draw_windows(folder / report.file_of("airfoil"), of["airfoil"][0], [_NOSE, _TAIL])
+    glyphs, outlines = ([one for one in found if one[0].kind == kind] for kind in ("glyph", "outline"))
+    pictures.draw_below(folder / report.file_of("glyphs"), [meshes for _, meshes, _ in glyphs], 6)
+    pictures.draw_below(folder / report.file_of("outlines"), [meshes for _, meshes, _ in outlines], 3)
+    details = [(meshes, _around_worst(meshes[OURS])) for _, meshes, _ in outlines]
+    pictures.draw_details(folder / report.file_of("details"), details)
+
+
+def _around_worst(mesh: Meshed) -> tuple[float, float, float, float]:
+    """A square around the worst element."""
+    quality = tessera.element_quality(mesh.vertices, mesh.triangles)
+    corners = mesh.vertices[mesh.triangles]
+    worst = int(np.argmin(quality))
+    x, y = corners[worst].mean(axis=0)
+    near = np.argsort(np.linalg.norm(corners.mean(axis=1) - (x, y), axis=1))[:_WINDOW]
+    lengths = np.linalg.norm(corners[near] - np.roll(corners[near], 1, axis=1), axis=2)
+    half = 0.5 * _WINDOW * float(np.median(lengths))
+    return x - half, x + half, y - half, y + half
+
+
+if __name__ == "__main__":
+    main()
