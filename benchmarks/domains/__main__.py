@@ -19,11 +19,12 @@ from .goals import growth_goals, quality_goals, validity_goal
 from .growth import LARGE, SIZES, Circle, measure_all
 from .invalid import Outcomes, count_invalid
 from .measures import Measures, measure
-from .meshers import OURS, Meshed, mesh_all
+from .meshers import OURS, Meshed, boundary_edges, mesh_all
+from .pictures import Window
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs" / "results"
-_NOSE, _TAIL = (-0.005, 0.12, -0.05, 0.05), (0.88, 1.005, -0.05, 0.05)
-_WINDOW = 24  # edge lengths across, of a detail
+_NOSE, _TAIL = (-0.005, 0.12, -0.05, 0.05), (0.88, 1.005, -0.02, 0.02)
+_WINDOW, _NEAR = 20, 200  # edge lengths across, of a detail; elements that these are of
 
 Found = list[tuple[Case, dict[str, Meshed], dict[str, Measures]]]
 
@@ -72,23 +73,23 @@ def draw(folder: Path, found: Found) -> None:
     """The pictures of all meshes."""
     of = {kind: [meshes for case, meshes, _ in found if case.kind == kind] for kind in ("circle", "airfoil", "plate")}
     pictures.draw_side_by_side(folder / report.file_of("circle"), of["circle"] + of["plate"])
-    pictures.draw_windows(folder / report.file_of("airfoil"), of["airfoil"][0], [_NOSE, _TAIL])
+    pictures.draw_airfoil(folder / report.file_of("airfoil"), of["airfoil"][0], [_NOSE, _TAIL])
     glyphs, outlines = ([one for one in found if one[0].kind == kind] for kind in ("glyph", "outline"))
     pictures.draw_below(folder / report.file_of("glyphs"), [meshes for _, meshes, _ in glyphs], 6)
-    pictures.draw_below(folder / report.file_of("outlines"), [meshes for _, meshes, _ in outlines], 3)
+    pictures.draw_below(folder / report.file_of("outlines"), [meshes for _, meshes, _ in outlines], 6)
     details = [(meshes, _around_worst(meshes[OURS])) for _, meshes, _ in outlines]
     pictures.draw_details(folder / report.file_of("details"), details)
 
 
-def _around_worst(mesh: Meshed) -> tuple[float, float, float, float]:
-    """A square around the worst element."""
+def _around_worst(mesh: Meshed) -> Window:
+    """A square around the worst element that has an inner vertex, so many lengths of the edges there wide."""
+    on_boundary = np.isin(mesh.triangles, np.unique(boundary_edges(mesh.triangles))).all(axis=1)
     quality = tessera.element_quality(mesh.vertices, mesh.triangles)
     corners = mesh.vertices[mesh.triangles]
-    worst = int(np.argmin(quality))
-    x, y = corners[worst].mean(axis=0)
-    near = np.argsort(np.linalg.norm(corners.mean(axis=1) - (x, y), axis=1))[:_WINDOW]
-    lengths = np.linalg.norm(corners[near] - np.roll(corners[near], 1, axis=1), axis=2)
-    half = 0.5 * _WINDOW * float(np.median(lengths))
+    middles = corners.mean(axis=1)
+    x, y = middles[np.argmin(np.where(on_boundary, np.inf, quality))]
+    near = np.argsort(np.linalg.norm(middles - (x, y), axis=1))[:_NEAR]
+    half = 0.5 * _WINDOW * float(np.median(np.linalg.norm(corners[near] - np.roll(corners[near], 1, axis=1), axis=2)))
     return x - half, x + half, y - half, y + half
 
 

@@ -85,7 +85,7 @@ def boundary_loops(mesh: Meshed) -> list[np.ndarray]:
 
     Raises ValueError where there is more than one outer one.
     """
-    following = dict(_boundary_edges(mesh.triangles).tolist())
+    following = dict(boundary_edges(mesh.triangles).tolist())
     loops = []
     while following:
         loop = [next(iter(following))]
@@ -101,12 +101,12 @@ def boundary_loops(mesh: Meshed) -> list[np.ndarray]:
 
 def same_boundary(one: Meshed, other: Meshed) -> bool:
     """Whether two meshes' boundary edges have the same ends, bit for bit."""
-    ends = [mesh.vertices[_boundary_edges(mesh.triangles)].reshape(-1, 4) for mesh in (one, other)]
+    ends = [mesh.vertices[boundary_edges(mesh.triangles)].reshape(-1, 4) for mesh in (one, other)]
     first, second = (part[np.lexsort(part.T)] for part in ends)
     return np.array_equal(first, second)
 
 
-def _boundary_edges(triangles: np.ndarray) -> np.ndarray:
+def boundary_edges(triangles: np.ndarray) -> np.ndarray:
     """(b, 2) directed edges that run along one triangle only."""
     edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2).astype(np.int64)
     size = int(triangles.max()) + 1

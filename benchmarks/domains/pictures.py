@@ -64,7 +64,7 @@ def draw_below(path: Path, domains: Sequence[Meshes], columns: int, width: float
 
 def draw_details(path: Path, details: Sequence[tuple[Meshes, Window]]) -> None:
     """A column for each domain with a square part of it, a row for each mesher."""
-    size = 12.0, 12 / len(details) * len(MESHERS) + 0.3
+    size = 14.0, 14 / len(details) * len(MESHERS) + 0.3
     figure, axes = plt.subplots(len(MESHERS), len(details), figsize=size, squeeze=False)
     for column, (meshes, window) in zip(axes.T, details, strict=True):
         for ax, mesher in zip(column, MESHERS, strict=True):
@@ -74,18 +74,20 @@ def draw_details(path: Path, details: Sequence[tuple[Meshes, Window]]) -> None:
     _save(figure, path)
 
 
-def draw_windows(path: Path, meshes: Meshes, windows: Sequence[Window]) -> None:
-    """A row for each mesher: the whole, below it parts of it."""
-    below = max((top - bottom) / (right - left) for left, right, bottom, top in windows) / len(windows)
-    heights = [_aspect(meshes), below] * len(MESHERS)
+def draw_airfoil(path: Path, meshes: Meshes, windows: Sequence[Window]) -> None:
+    """The whole by each mesher, one below the other, then a row for each part of it, with a column for each mesher."""
+    parts = [(top - bottom) / (right - left) / len(MESHERS) for left, right, bottom, top in windows]
+    heights = [1.25 * _aspect(meshes)] * len(MESHERS) + parts
     figure = plt.figure(figsize=(12, 12 * sum(heights) + 0.6))
-    grid = figure.add_gridspec(len(heights), len(windows), height_ratios=heights)
-    for row, name in enumerate(MESHERS):
-        whole = figure.add_subplot(grid[2 * row, :])
+    grid = figure.add_gridspec(len(heights), len(MESHERS), height_ratios=heights)
+    for number, name in enumerate(MESHERS):
+        whole = figure.add_subplot(grid[number, :])
         _draw(whole, meshes[name])
         _name([whole], [name])
-        for column, window in enumerate(windows):
-            _draw(figure.add_subplot(grid[2 * row + 1, column]), meshes[name], window)
+        for row, window in enumerate(windows):
+            ax = figure.add_subplot(grid[len(MESHERS) + row, number])
+            _draw(ax, meshes[name], window)
+            ax.set_title(name, fontsize=9, color=LINE)
     _save(figure, path)
 
 

@@ -22,7 +22,7 @@ PICTURES = {
     "airfoil": "The airfoil, its nose and its tail",
     "glyphs": "Glyphs",
     "outlines": "Coasts",
-    "details": "Each coast around our worst element",
+    "details": "Each coast around the worst element of ours that has an inner vertex",
     "growth": "Seconds and memory over triangles",
 }
 
