@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import argparse
-import multiprocessing
 import os
-from collections.abc import Sequence
-from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -14,19 +11,17 @@ import numpy as np
 import tessera
 
 from . import pictures, report
-from .cases import Case, all_cases, target_of
+from .cases import all_cases
+from .comparison import Found, mesh_cases
 from .goals import growth_goals, quality_goals, validity_goal
 from .growth import LARGE, SIZES, Circle, measure_all
 from .invalid import Outcomes, count_invalid
-from .measures import Measures, measure
-from .meshers import OURS, Meshed, boundary_edges, mesh_all
+from .meshers import OURS, Meshed, boundary_edges
 from .pictures import Window
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs" / "results"
 _NOSE, _TAIL = (-0.005, 0.12, -0.05, 0.05), (0.88, 1.005, -0.02, 0.02)
 _WINDOW, _NEAR = 20, 200  # edge lengths across, of a detail; elements that these are of
-
-Found = list[tuple[Case, dict[str, Meshed], dict[str, Measures]]]
 
 
 def main() -> None:
@@ -40,21 +35,6 @@ def main() -> None:
     circles = measure_all(LARGE if arguments.quick else SIZES[-1])
     found = mesh_cases(range(len(all_cases())), processes)
     print(write(FOLDER, found, circles, count_invalid(arguments.random, processes)))
-
-
-def mesh_cases(numbers: Sequence[int], processes: int) -> Found:
-    """Some of `all_cases`, meshed and measured in several processes."""
-    cases = all_cases()
-    with ProcessPoolExecutor(processes, multiprocessing.get_context("spawn")) as pool:
-        # The last take longest.
-        parts = list(pool.map(_mesh_case, list(numbers)[::-1]))[::-1]
-    return [(cases[number], *part) for number, part in zip(numbers, parts, strict=True)]
-
-
-def _mesh_case(number: int) -> tuple[dict[str, Meshed], dict[str, Measures]]:
-    case = all_cases()[number]
-    meshes, target = mesh_all(case), target_of(case)
-    return meshes, {name: measure(mesh, target, case.left_out) for name, mesh in meshes.items()}
 
 
 def write(folder: Path, found: Found, circles: list[Circle], outcomes: Outcomes) -> str:

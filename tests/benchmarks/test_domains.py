@@ -9,7 +9,8 @@ import pytest
 
 import tessera
 from benchmarks.domains import cases, goals, growth, invalid, meshers, random_domains, report
-from benchmarks.domains.__main__ import _mesh_case, write
+from benchmarks.domains.__main__ import write
+from benchmarks.domains.comparison import mesh_case, mesh_cases
 from benchmarks.domains.measures import inner_edges, measure
 from tests.validity import boundary_edges, check_mesh, polygon_area, polygon_is_simple
 
@@ -18,7 +19,7 @@ TINY = [0, 1, 2, 3, 15]  # the circle, the airfoil, the plate, a glyph and a coa
 
 @pytest.fixture(scope="module")
 def found():
-    return [(cases.all_cases()[number], *_mesh_case(number)) for number in TINY]
+    return [(cases.all_cases()[number], *mesh_case(number)) for number in TINY]
 
 
 def qualities(vertices, triangles):
@@ -158,6 +159,13 @@ def test_a_circle_is_timed_in_a_process_of_its_own():
     (circle,) = growth.measure_all(1_000)
     assert 850 < circle.triangles < 1_150 and 850 < circle.their_triangles < 1_150
     assert circle.seconds > 0 and circle.their_seconds > 0 and 3e7 < circle.peak < 2e9
+
+
+def test_other_processes_find_the_same(found):
+    ((case, meshes, measures),) = mesh_cases(TINY[:1], 1)
+    assert case.name == found[0][0].name and meshes.keys() == measures.keys() == found[0][1].keys()
+    for mesher, mesh in meshes.items():
+        assert np.array_equal(mesh.vertices, found[0][1][mesher].vertices)
 
 
 def test_the_page_has_every_goal_and_picture(found, tmp_path):
