@@ -106,7 +106,7 @@ def growth_goals(circles: list[Circle]) -> list[Goal]:
     power, limit = exponents(circles)
     return [
         Goal(
-            f"{what}: seconds",
+            f"{what}: seconds of one core",
             "—",
             "≤ Gmsh Delaunay's",
             f"{large.seconds:.2f}",

@@ -101,7 +101,7 @@ def draw_growth(path: Path, circles: Sequence[Circle]) -> None:
     time.loglog(n, factor * n * np.log(n), "-", color="#1d3557", lw=1, alpha=0.6, label=label)
     theirs = [circle.their_triangles for circle in circles], [circle.their_seconds for circle in circles]
     time.loglog(*theirs, "s", color="#e63946", ms=4, label="Gmsh Delaunay")
-    time.set(xlabel="triangles of a circle", ylabel="seconds on one core")
+    time.set(xlabel="triangles of a circle", ylabel="seconds of one core")
     time.legend(fontsize=8)
     memory.loglog(n, [circle.peak / 1e9 for circle in circles], "o-", color="#1d3557")
     memory.axhline(2, color="#e63946", lw=1)

@@ -12,7 +12,7 @@ from training.provenance import code_version, network_hashes
 from .. import machine
 from .cases import EVEN, FONT, THIN, UNIFORM
 from .goals import Goal, Results
-from .growth import ASYMPTOTIC, Circle, n_log_n
+from .growth import ASYMPTOTIC, REPEATED, ROUNDS, Circle, n_log_n
 from .invalid import CRASHED, INVALID, REFUSED, VALID, Outcomes
 from .measures import LONGEST, SHORTEST, Measures
 from .meshers import MESHERS
@@ -109,9 +109,10 @@ def _growth(circles: Sequence[Circle]) -> str:
     ]
     return (
         "## Large circles\n\n"
-        "Each in a process of its own, bound to one core; both meshers in turn, medians of three rounds up to 100 000 "
-        "triangles, one above. Gmsh has the same boundary and edge length, and its time is all from points to arrays. "
-        "Memory is the most that the process held after our first mesh, before Gmsh was loaded. The curve is fitted to "
+        f"Each in a process of its own, bound to one core; both meshers in turn, medians of {ROUNDS} rounds up to "
+        f"{REPEATED:,} triangles, one above. Seconds are the processor's. Gmsh has the same boundary and edge length, "
+        "and its time is all from points to arrays. Memory is the most that the process held after our first mesh, "
+        "before Gmsh was loaded. The curve is fitted to "
         f"the logarithms from {ASYMPTOTIC:,} triangles on: {1e6 * n_log_n(list(circles)):.2f} µs · n log n.\n\n"
         f"{table(columns, rows)}\n\n![{PICTURES['growth']}]({file_of('growth')})"
     )
