@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arcs import Arcs
+from .finer import Arcs
 from .assembly import mean_edge_lengths, mesh_cells, wanted_edge_lengths
 from .bridges import bridge_holes
 from .coarsening import MOST_LEVELS, Coarsening, coarsen

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arcs import Arcs
+from .finer import Arcs
 from .assembly import mean_edge_lengths, mesh_cells
 from .cavity import areas
 from .contour import neighbours
