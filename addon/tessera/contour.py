@@ -66,7 +66,7 @@ def clean_domains(domains: Sequence[Sequence[ArrayLike]]) -> list[list[np.ndarra
     results: list[list[np.ndarray] | ContourError] = []
     for loops in domains:
         try:
-            results.append([_without_repeats(_checked(points)) for points in loops])
+            results.append([without_repeats(checked_points(points)) for points in loops])
         except ContourError as error:
             results.append(error)
     complete = False
@@ -83,21 +83,22 @@ def _counter_clockwise(loop: np.ndarray) -> np.ndarray:
     return loop if turn > 0 else loop[::-1].copy()
 
 
-def _checked(points: ArrayLike) -> np.ndarray:
+def checked_points(points: ArrayLike, name: str = "a contour") -> np.ndarray:
+    """Points (k, 2) as float64; raises ContourError "not-finite", or ValueError if the shape is another."""
     points = np.array(points, dtype=np.float64)
     if points.size == 0:
         points = points.reshape(0, 2)
     if points.ndim != 2 or points.shape[1] != 2:
-        message = f"a contour is an array of shape (k, 2), not {points.shape}"
+        message = f"{name} is an array of shape (k, 2), not {points.shape}"
         raise ValueError(message + ("; a domain is a sequence of contours" if points.shape == (2,) else ""))
     bad = np.nonzero(~np.isfinite(points).all(axis=1))[0]
     if len(bad):
-        message = f"Point {bad[0]} (counting from 0) of the contour has a coordinate that is not a finite number. "
+        message = f"Point {bad[0]} (counting from 0) of {name.replace('a ', 'the ')} has a coordinate that is not a finite number. "
         raise ContourError("not-finite", message + "Remove the point or correct it.")
     return points
 
 
-def _without_repeats(points: np.ndarray) -> np.ndarray:
+def without_repeats(points: np.ndarray) -> np.ndarray:
     """The points that are not at the place of the one before; raises if no polygon is left."""
     place = tuple(map(float, points[0])) if len(points) else None
     if len(points):
