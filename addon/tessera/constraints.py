@@ -37,6 +37,27 @@ class PlanarDomain:
     warnings: tuple[str, ...]
 
 
+def planar_domains(
+    domains: Sequence[Sequence[ArrayLike] | Domain], cleaned: list[list[np.ndarray] | ContourError]
+) -> tuple[list[list[np.ndarray] | ContourError], dict[int, PlanarDomain]]:
+    """`planar_domain` for those of a batch that need it, by number; and `cleaned` with the errors that they have.
+
+    cleaned: of the others, what `clean_domains` gives; one whose contours meet may be told apart with common vertices.
+    """
+    planar, results = {}, list(cleaned)
+    for number, domain in enumerate(domains):
+        error = cleaned[number]
+        meets = isinstance(error, ContourError) and error.reason in ("crossing", "self-intersection")
+        if not meets and not isinstance(domain, Domain):
+            continue
+        try:
+            planar[number] = planar_domain(Domain(domain, None, None, ()) if meets else domain)
+            results[number] = planar[number].loops
+        except ContourError as wrong:
+            results[number] = wrong
+    return results, planar
+
+
 def planar_domain(domain: Domain) -> PlanarDomain:
     """The graph of a domain. Raises ContourError.
 

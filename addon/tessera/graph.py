@@ -31,6 +31,15 @@ class Graph:
         """(e,) which edges have elements on both sides."""
         return (self.sides >= 0).all(axis=1)
 
+    @property
+    def n_regions(self) -> int:
+        """One more than the largest number of a region."""
+        return int(max(self.sides.max(), self.home.max())) + 1
+
+    def length(self) -> float:
+        """The length of all edges."""
+        return float(np.linalg.norm(self.points[self.edges[:, 1]] - self.points[self.edges[:, 0]], axis=1).sum())
+
     def area(self) -> float:
         """The area of all regions."""
         x, y = (self.points - self.points[0]).T

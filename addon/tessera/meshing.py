@@ -4,21 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import repeat
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .arcs import resample_graph
 from .assembly import mean_edge_lengths, mesh_cells, wanted_edge_lengths
 from .boundary import resample_loops
-from .bridges import bridge_holes
-from .contour import Nesting, clean_domains, clean_loop, nesting, signed_area
+from .constraints import Domain, PlanarDomain, planar_domains
+from .contour import Nesting, clean_domains, clean_loop, edges_of, nesting, signed_area
 from .division import divide
 from .errors import ContourError
 from .flips import flip_edges
 from .gradation import Target, prepare
 from .mesh import Mesh, make_mesh
 from .notices import long_edge_warnings, lost_area_warnings
+from .outlines import Outlines
 from .placement import MOST_INNER
 from .refinement import refine
 from .remeshing import improve
@@ -35,6 +36,8 @@ def mesh(
     loops: Sequence[ArrayLike],
     edge_length: float,
     *,
+    points: ArrayLike | None = None,
+    lines: Sequence[ArrayLike] = (),
     sizing: Sizing | None = None,
     min_edge_length: float | None = None,
     gradation: float = 1.3,
@@ -52,16 +55,54 @@ def mesh(
     of the two elements beside them. smooth: how often every inner vertex may move after that, to better the poorest
     elements.
 
+    points: (p, 2), inside the domain, that must be vertices of the mesh. lines: polylines (k, 2), closed if they end
+    where they start, whose course must be edges of the mesh; their vertices are placed as those of the contours. They
+    may end at contours and at each other, and share vertices, but they cross nothing.
+
     sizing: asks for shorter targets than edge_length: a number; a function that takes points (n, 2) in the domain and
     gives lengths (n,); `by_curvature`, `by_thickness`, `by_distance`, `from_values`; or the `smallest` of several. No
     target is shorter than min_edge_length, and from one element to the next it changes by no more than the factor
     gradation.
 
+    Contours that touch in vertices, or outside of each other along edges, are meshed with a common boundary there, and
+    a warning. The mesh's region is the number of the outer contour around each triangle.
+
     Raises ContourError, whose ``reason`` is a short word, for input that cannot be meshed, and a plain ValueError for
     what is no sequence of (k, 2) arrays of numbers.
     """
     wanted = sizing, min_edge_length, gradation, corner_angle
-    (result,) = mesh_domains([loops], edge_length, boundary, flips, smooth, *wanted)
+    constrained = points is not None or len(lines) > 0
+    domain = Domain(loops, None, points, lines) if constrained else loops
+    (result,) = mesh_domains([domain], edge_length, boundary, flips, smooth, *wanted)
+    if isinstance(result, ContourError):
+        raise result
+    return result
+
+
+def mesh_regions(
+    regions: Sequence[Sequence[ArrayLike]],
+    edge_length: float,
+    *,
+    points: ArrayLike | None = None,
+    lines: Sequence[ArrayLike] = (),
+    sizing: Sizing | None = None,
+    min_edge_length: float | None = None,
+    gradation: float = 1.3,
+    boundary: str = "resample",
+    corner_angle: float = 32.0,
+    flips: bool = False,
+    smooth: int = 0,
+) -> Mesh:
+    """Mesh several regions as one: where they share edges, or parts of them, they have the same vertices.
+
+    regions: domains as of `mesh`, that do not overlap. A vertex of one that is nearer to an edge of another than 1e-6
+    of the size of all lies on it. The mesh's region is the number of the region that each triangle is part of. All else
+    is as of `mesh`. Raises ContourError, "overlap" for regions that overlap.
+    """
+    wanted = sizing, min_edge_length, gradation, corner_angle
+    loops = [loop for region in regions for loop in region]
+    of = [number for number, region in enumerate(regions) for _ in region]
+    (result,) = mesh_domains([Domain(loops, of, points, lines)], edge_length, boundary, flips, smooth, *wanted)
     if isinstance(result, ContourError):
         raise result
     return result
@@ -108,19 +149,24 @@ def mesh_contour(points: ArrayLike, edge_length: float, *, flips: bool = False, 
     if smooth:
         with watch("smoothing"):
             vertices = move_downhill(vertices, meshes.triangles, smooth)
-    warnings = long_edge_warnings([contour], lambda places: np.full(len(places), edge_length))
+    warnings = long_edge_warnings(*edges_of([contour]), lambda places: np.full(len(places), edge_length))
     if meshes.n_inner[0] < meshes.wanted[0]:
         warnings += (
             f"{meshes.wanted[0]} inner vertices would suit the target edge length, {meshes.n_inner[0]} were placed "
             f"(at most {MOST_INNER}): tessera.mesh refines further",
         )
     return make_mesh(
-        vertices, meshes.triangles, fallbacks=int(meshes.fallbacks[0]), warnings=warnings, seconds=watch.seconds
+        vertices,
+        meshes.triangles,
+        np.zeros(len(meshes.triangles)),
+        fallbacks=int(meshes.fallbacks[0]),
+        warnings=warnings,
+        seconds=watch.seconds,
     )
 
 
 def mesh_domains(
-    domains: Sequence[Sequence[ArrayLike]],
+    domains: Sequence[Sequence[ArrayLike] | Domain],
     edge_length: float,
     boundary: str,
     flips: bool,
@@ -140,38 +186,66 @@ def mesh_domains(
         sizing, limits = None, replace(limits, longest=min(limits.longest, number))
     watch = Stopwatch()
     with watch("contours"):
-        cleaned = clean_domains(domains)
-        nested = [nesting([] if isinstance(loops, ContourError) else loops) for loops in cleaned]
-        results = list(map(checked_domain, cleaned, nested, repeat(limits.longest)))
+        cleaned, planar = planar_domains(domains, clean_domains([() if isinstance(d, Domain) else d for d in domains]))
+        nested = [nesting([] if isinstance(d, ContourError) or n in planar else d) for n, d in enumerate(cleaned)]
+        results = [
+            checked_graph(planar[n], limits.longest) if n in planar else checked_domain(d, nested[n], limits.longest)
+            for n, d in enumerate(cleaned)
+        ]
     with watch("sizing"):
         sound = {number: result for number, result in enumerate(results) if not isinstance(result, ContourError)}
         target, errors = prepare(sound, sizing, limits, MOST_TRIANGLES)
         results = [errors.get(number, result) for number, result in enumerate(results)]
     with watch("boundary"):
         numbers = [number for number, result in enumerate(results) if not isinstance(result, ContourError)]
-        loops = [loop for number in numbers for loop in results[number]]
-        domain = np.repeat(numbers, [len(results[number]) for number in numbers]).astype(np.int64)
-        region, is_hole = _regions([nested[number] for number in numbers])
-        if boundary == "resample" and loops:
-            spacing = limits.longest if target.constant else target
-            loops = resample_loops(loops, spacing, domain, limits.corner_angle)
-    if loops:
-        parts = _mesh_regions(loops, region, is_hole, domain, target, flips, smooth, watch)
-        vertices, triangles, owner, fallbacks = parts
-        of = domain[owner]
+        outlines = _outlines(results, nested, planar, numbers)
+        if boundary == "resample":
+            outlines = _resampled(outlines, target, limits.corner_angle)
+    if numbers:
+        vertices, triangles, owner, fallbacks = _mesh_regions(outlines, target, flips, smooth, watch)
+        domain, first = outlines.domains, outlines.firsts
         fell = np.bincount(domain, fallbacks, minlength=len(results)).astype(int)
-        for number, (part, elements) in zip(numbers, _parts(vertices, triangles, of, numbers), strict=True):
+        parts = _parts(vertices, triangles, owner, domain[owner], numbers)
+        for number, (part, elements, region) in zip(numbers, parts, strict=True):
+            one, places = planar.get(number), target.inside(number)
             if boundary == "keep":
-                warnings = long_edge_warnings(
-                    results[number], lambda places, n=number: target(places, np.full(len(places), n))
-                )
+                ends = one.graph.points[one.graph.edges.T] if one else edges_of(results[number])
+                warnings = long_edge_warnings(*ends, places)
             else:
-                area = enclosed_area(results[number], nested[number])
+                area = one.graph.area() if one else enclosed_area(results[number], nested[number])
                 warnings = lost_area_warnings(area, part, elements, target.most[number])
             results[number] = make_mesh(
-                part, elements, fallbacks=int(fell[number]), warnings=warnings, seconds=watch.seconds
+                part,
+                elements,
+                region - first[number],
+                fallbacks=int(fell[number]),
+                warnings=warnings + (one.warnings if one else ()),
+                seconds=watch.seconds,
             )
     return [target.errors.get(number, result) for number, result in enumerate(results)]
+
+
+def _outlines(
+    results: list, nested: list[Nesting], planar: dict[int, PlanarDomain], numbers: list[int]
+) -> Outlines:
+    """What bounds the domains of some numbers."""
+    simple = [number for number in numbers if number not in planar]
+    loops = [loop for number in simple for loop in results[number]]
+    domain = np.repeat(simple, [len(results[number]) for number in simple]).astype(np.int64)
+    graphs = {number: planar[number].graph for number in numbers if number in planar}
+    return Outlines(loops, *_regions([nested[number] for number in simple]), domain, graphs)
+
+
+def _resampled(outlines: Outlines, target: Target, corner_angle: float) -> Outlines:
+    """The same with vertices at the target edge length."""
+    loops, graphs = outlines.loops, {}
+    if loops:
+        spacing = target.most[outlines.domain] if target.constant else target
+        loops = resample_loops(loops, spacing, outlines.domain, corner_angle)
+    for number, graph in outlines.graphs.items():
+        spacing = float(target.most[number]) if target.constant else target.inside(number)
+        graphs[number] = resample_graph(graph, spacing, corner_angle)
+    return replace(outlines, loops=loops, graphs=graphs)
 
 
 def checked_domain(
@@ -182,8 +256,17 @@ def checked_domain(
         return loops
     if not loops:
         return ContourError("too-few-points", "The domain has no contour. Give at least one closed loop of points.")
-    area = enclosed_area(loops, nested)
     length = sum(float(np.linalg.norm(loop - np.roll(loop, 1, axis=0), axis=1).sum()) for loop in loops)
+    return _too_many(enclosed_area(loops, nested), length, edge_length) or loops
+
+
+def checked_graph(domain: PlanarDomain, edge_length: float) -> list[np.ndarray] | ContourError:
+    """The domain's clean loops, or the error of one that would have too many triangles."""
+    return _too_many(domain.graph.area(), domain.graph.length(), edge_length) or domain.loops
+
+
+def _too_many(area: float, length: float, edge_length: float) -> ContourError | None:
+    """The error of a domain of an area, with so much of boundary, that would have too many triangles."""
     # Equilateral triangles, and one on each edge of the boundary: area / l² + length / l, both divided before they are
     # multiplied, so that no length is too small or too large for it.
     area *= 4 / 3**0.5
@@ -195,7 +278,7 @@ def checked_domain(
             f"the most is {MOST_TRIANGLES:,}. Use {1.1 * smallest:.2g} or more."
         )
         return ContourError("too-many-triangles", message)
-    return loops
+    return None
 
 
 def enclosed_area(loops: list[np.ndarray], nested: Nesting) -> float:
@@ -222,20 +305,10 @@ def _regions(nested: list[Nesting]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _mesh_regions(
-    loops: list[np.ndarray],
-    region: np.ndarray,
-    is_hole: np.ndarray,
-    domain: np.ndarray,
-    target: Target,
-    flips: bool,
-    smooth: int,
-    watch: Stopwatch,
+    outlines: Outlines, target: Target, flips: bool, smooth: int, watch: Stopwatch
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Mesh what loops bound (`bridge_holes`): vertices (n, 2), triangles (m, 3), the region of each (m,), fallbacks.
-
-    domain: (l,) the number that the target knows each loop's domain by. The fallbacks are counted by region (l,), for
-    as many as there are loops.
-    """
+    """Mesh what outlines bound: vertices (n, 2), triangles (m, 3), the region of each (m,), fallbacks by region (r,)."""
+    domain = outlines.domains
 
     def wanted(points: np.ndarray, region: np.ndarray) -> np.ndarray:
         """The target at points (n, 2) of regions (n,)."""
@@ -243,7 +316,7 @@ def _mesh_regions(
 
     with watch("division"):
         longest, varying = target.most[domain], None if target.constant else wanted
-        points, polygons = bridge_holes(loops, region, is_hole, longest, varying)
+        points, polygons, fixed = outlines.polygons(longest, varying)
         division = divide(points, polygons, longest, varying)
         if target.constant:
             cell_target = mean_edge_lengths(division.points, division.cells)
@@ -251,31 +324,34 @@ def _mesh_regions(
             cell_target = wanted_edge_lengths(division.points, division.cells, division.owner, wanted)
     vertices, triangles, cell, fallbacks = mesh_cells(division.points, division.cells, cell_target, watch)
     owner = division.owner[cell]
-    sizing = grade_from_edges(loops, region, wanted)
-    vertices, triangles, parent, more = refine(vertices, triangles, owner, sizing, watch)
-    counts = np.bincount(division.owner, fallbacks, minlength=len(loops))
-    counts += np.bincount(owner, more, minlength=len(loops))
-    vertices, triangles, owner, again = improve(vertices, triangles, owner[parent], watch)
+    sizing = grade_from_edges(*outlines.edges(), wanted)
+    if fixed is not None:  # an edge between two regions has the same length for both
+        together, of_one = outlines.together(), sizing
+        sizing = lambda points, region: of_one(points, together[region])  # noqa: E731
+    vertices, triangles, parent, more = refine(vertices, triangles, owner, sizing, watch, fixed)
+    counts = np.bincount(division.owner, fallbacks, minlength=len(domain))
+    counts += np.bincount(owner, more, minlength=len(domain))
+    vertices, triangles, owner, again = improve(vertices, triangles, owner[parent], watch, fixed)
     counts[: len(again)] += again
     if flips:
         with watch("flips"):
-            triangles = flip_edges(vertices, triangles)
+            triangles = flip_edges(vertices, triangles, fixed)
     if smooth:
         with watch("smoothing"):
-            vertices = move_downhill(vertices, triangles, smooth, owner)
+            vertices = move_downhill(vertices, triangles, smooth, owner, fixed)
     return vertices, triangles, owner, counts
 
 
 def _parts(
-    vertices: np.ndarray, triangles: np.ndarray, domain: np.ndarray, numbers: list[int]
-) -> list[tuple[np.ndarray, np.ndarray]]:
-    """The vertices and triangles of each domain by itself; vertices keep their order."""
+    vertices: np.ndarray, triangles: np.ndarray, region: np.ndarray, domain: np.ndarray, numbers: list[int]
+) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """The vertices, the triangles and their regions of each domain by itself; vertices keep their order."""
     order = np.argsort(domain, kind="stable")
-    triangles, domain = triangles[order], domain[order]
+    triangles, region, domain = triangles[order], region[order], domain[order]
     starts = np.searchsorted(domain, numbers)
     ends = np.searchsorted(domain, numbers, side="right")
     parts = []
     for start, end in zip(starts, ends, strict=True):
         used, local = np.unique(triangles[start:end], return_inverse=True)
-        parts.append((vertices[used], local.reshape(-1, 3)))
+        parts.append((vertices[used], local.reshape(-1, 3), region[start:end]))
     return parts

@@ -6,15 +6,15 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .contour import edges_of
 from .sizing import LONG
 
 LOST_AREA = 0.1  # of a curve's area, from which a coarser boundary is warned of
 
 
-def long_edge_warnings(loops: list[np.ndarray], target: Callable[[np.ndarray], np.ndarray]) -> tuple[str, ...]:
-    """A warning where kept boundary edges are longer than the target, (n, 2) places -> (n,) lengths, or none."""
-    start, end = edges_of(loops)
+def long_edge_warnings(
+    start: np.ndarray, end: np.ndarray, target: Callable[[np.ndarray], np.ndarray]
+) -> tuple[str, ...]:
+    """A warning where kept edges, from start to end (e, 2), are longer than the target, (n, 2) places -> (n,) lengths."""
     lengths = np.linalg.norm(end - start, axis=1)
     wanted = target(0.5 * (start + end))
     long = np.count_nonzero(lengths > LONG * wanted)

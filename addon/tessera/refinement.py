@@ -13,7 +13,7 @@ from collections.abc import Callable
 import numpy as np
 
 from .assembly import mean_edge_lengths, mesh_cells
-from .edges import inner_edges, sides
+from .edges import among, inner_edges, sides
 from .quality import element_quality
 from .relaxation import relax
 from .stopwatch import Stopwatch
@@ -31,12 +31,17 @@ Sizing = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
 def refine(
-    vertices: np.ndarray, triangles: np.ndarray, domain: np.ndarray, sizing: Sizing, watch: Stopwatch
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    domain: np.ndarray,
+    sizing: Sizing,
+    watch: Stopwatch,
+    fixed: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Refine a mesh until its inner edges follow the sizing function.
 
     vertices: (n, 2); triangles: (m, 3); domain: (m,) int of each triangle; sizing: (k, 2) points and the domains (k,)
-    that they are in -> (k,) wanted edge lengths. Returns vertices, the old ones first, triangles (t, 3), the old
+    that they are in -> (k,) wanted edge lengths; fixed: (f, 2) edges that stay, as the boundary does. Returns vertices, the old ones first, triangles (t, 3), the old
     triangle that each is part of (t,), and for each of those the fallbacks (m,).
     """
     parent = np.arange(len(triangles))
@@ -46,7 +51,7 @@ def refine(
         ends = vertices[edges]
         home = np.zeros(len(vertices), dtype=np.int64)
         home[triangles] = domain[parent][:, None]
-        may_split = inner & ~_beside_slivers(vertices, triangles, edges)
+        may_split = inner & ~_beside_slivers(vertices, triangles, edges) & ~among(edges, fixed)
         with watch("sizing"):
             segments, wanted = _segments(ends, may_split, home[edges[:, 0]], sizing)
         if segments.max(initial=1) == 1:
@@ -61,7 +66,7 @@ def refine(
         of = domain[parent]
         changed = np.isin(of, of[-len(new) :])
         with watch("relaxation"):
-            vertices = relax(vertices, triangles[changed], of[changed], passes=1)
+            vertices = relax(vertices, triangles[changed], of[changed], passes=1, fixed=fixed)
     return vertices, triangles, parent, fallbacks
 
 

@@ -27,14 +27,15 @@ def relax(
     domain: np.ndarray,
     passes: int = PASSES,
     disturbed: np.ndarray | None = None,
+    fixed: np.ndarray | None = None,
 ) -> np.ndarray:
     """Better places for the vertices of a mesh that are off its boundary: (n, 2); the others stay.
 
     vertices: (n, 2); triangles: (m, 3); domain: (m,) int, the domain of each triangle: the vertices of each are
     numbered by themselves, so that a domain is relaxed alike alone and in a batch. disturbed: (n,) bool, vertices near
-    which there is something to relax; all, if not given.
+    which there is something to relax; all, if not given. fixed: (f, 2) edges whose vertices stay too.
     """
-    sets = find_independent_stars(triangles, domain, len(vertices), LARGEST_STAR)
+    sets = find_independent_stars(triangles, domain, len(vertices), LARGEST_STAR, fixed)
     vertices = vertices.copy()
     if disturbed is None:
         disturbed = np.ones(len(vertices), dtype=bool)

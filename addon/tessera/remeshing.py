@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from .assembly import mean_edge_lengths, mesh_cells
-from .edges import off_boundary
+from .edges import among, off_boundary
 from .quality import element_quality
 from .relaxation import relax
 from .scheme import LARGEST_CONTOUR
@@ -22,19 +22,23 @@ _GAIN = 1e-2  # in worst and mean quality added
 
 
 def improve(
-    vertices: np.ndarray, triangles: np.ndarray, domain: np.ndarray, watch: Stopwatch
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    domain: np.ndarray,
+    watch: Stopwatch,
+    fixed: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Relax a mesh, then mesh its poor cavities again and relax, a few times.
 
-    vertices: (n, 2); triangles: (m, 3); domain: (m,) int from 0: each domain is treated as it would be alone. Returns
-    the same of the better mesh, where vertices that it has no use for stay, and the fallbacks of each domain.
+    vertices: (n, 2); triangles: (m, 3); domain: (m,) int from 0: each domain is treated as it would be alone;
+    fixed: (f, 2) edges that stay, as the boundary does. Returns the same of the better mesh, where vertices that it has no use for stay, and the fallbacks of each domain.
     """
     fallbacks = np.zeros(int(domain.max()) + 1, dtype=np.int64)
     with watch("relaxation"):
-        vertices = relax(vertices, triangles, domain)
+        vertices = relax(vertices, triangles, domain, fixed=fixed)
     active = np.ones(len(domain), dtype=bool)
     for _ in range(ROUNDS):
-        vertices, new, of, replaced, homes, fell = _remesh(vertices, triangles[active], domain[active], watch)
+        vertices, new, of, replaced, homes, fell = _remesh(vertices, triangles[active], domain[active], watch, fixed)
         triangles, domain = np.concatenate([triangles[~active], new]), np.concatenate([domain[~active], of])
         np.add.at(fallbacks, homes, fell)
         active = np.isin(domain, homes)
@@ -43,12 +47,12 @@ def improve(
         disturbed = np.zeros(len(vertices), dtype=bool)
         disturbed[replaced] = True
         with watch("relaxation"):
-            vertices = relax(vertices, triangles, domain, disturbed=disturbed)
+            vertices = relax(vertices, triangles, domain, disturbed=disturbed, fixed=fixed)
     return vertices, triangles, domain, fallbacks
 
 
 def _remesh(
-    vertices: np.ndarray, triangles: np.ndarray, domain: np.ndarray, watch: Stopwatch
+    vertices: np.ndarray, triangles: np.ndarray, domain: np.ndarray, watch: Stopwatch, fixed: np.ndarray | None
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Mesh poor cavities again, once.
 
@@ -56,7 +60,10 @@ def _remesh(
     and the domain and the fallbacks of each.
     """
     quality = element_quality(vertices, triangles)
-    contours, cavity = _contours(triangles, _cavities(triangles, quality, off_boundary(triangles, len(vertices))))
+    cavity = _cavities(triangles, quality, off_boundary(triangles, len(vertices), fixed))
+    if fixed is not None:
+        cavity[np.isin(cavity, _swallowing(triangles, cavity, fixed))] = -1
+    contours, cavity = _contours(triangles, cavity)
     if not len(contours):
         return vertices, triangles, domain, domain[:0], domain[:0], domain[:0]
     taken = np.flatnonzero(cavity >= 0)
@@ -94,6 +101,20 @@ def _cavities(triangles: np.ndarray, quality: np.ndarray, free: np.ndarray) -> n
         spoiled[:-1] |= lost
     spoiled[-1] = True
     return np.where(spoiled[best], -1, best)
+
+
+def _swallowing(triangles: np.ndarray, cavity: np.ndarray, fixed: np.ndarray) -> np.ndarray:
+    """The cavities that have a fixed edge between two of their elements, or one of its vertices (all around the end)."""
+    inside = np.flatnonzero(cavity >= 0)
+    start, end = triangles[inside].ravel(), np.roll(triangles[inside], -1, axis=1).ravel()
+    label = np.repeat(cavity[inside], 3)
+    stride = int(triangles.max(initial=0)) + 1
+    here, back = ((label * stride + a) * stride + b for a, b in ((start, end), (end, start)))
+    within = np.isin(here, back)
+    edges = label[within & among(np.column_stack([start, end]), fixed)]
+    at = label * stride + start
+    on_outline = np.isin(at, np.concatenate([at[~within], (label * stride + end)[~within]]))
+    return np.unique(np.concatenate([edges, label[~on_outline & np.isin(start, fixed)]]))
 
 
 def _contours(triangles: np.ndarray, cavity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -27,19 +27,25 @@ def checked_steps(steps: int) -> int:
     return int(steps)
 
 
-def smooth(vertices: np.ndarray, triangles: np.ndarray, steps: int, domain: np.ndarray | None = None) -> np.ndarray:
+def smooth(
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    steps: int,
+    domain: np.ndarray | None = None,
+    fixed: np.ndarray | None = None,
+) -> np.ndarray:
     """Better places for the vertices of meshes that are off the boundary, (n, 2); the others stay.
 
     vertices: (n, 2) float64; triangles: (m, 3) int, counter-clockwise; steps: how often every vertex may move, but for
     those with more than 32 neighbours; domain: (m,) int, of a batch: what is done to one domain's mesh does not depend
-    on the others. Raises ValueError as `checked_steps`.
+    on the others; fixed: (f, 2) edges whose vertices stay too. Raises ValueError as `checked_steps`.
     """
     steps, vertices = checked_steps(steps), np.array(vertices, dtype=np.float64)
     if not (steps and len(triangles)):
         return vertices
     if domain is None:
         domain = np.zeros(len(triangles), dtype=np.int64)
-    sets = find_independent_stars(triangles, domain, len(vertices), _LARGEST_STAR)
+    sets = find_independent_stars(triangles, domain, len(vertices), _LARGEST_STAR, fixed)
     for _ in range(steps):
         for independent in sets:
             vertices[independent.centre] = _downhill(vertices, independent)

@@ -47,13 +47,15 @@ def find_stars(triangles: np.ndarray, free: np.ndarray, largest: int) -> Stars:
     return Stars(centre[start], ring, count)
 
 
-def find_independent_stars(triangles: np.ndarray, domain: np.ndarray, n_vertices: int, largest: int) -> list[Stars]:
+def find_independent_stars(
+    triangles: np.ndarray, domain: np.ndarray, n_vertices: int, largest: int, fixed: np.ndarray | None = None
+) -> list[Stars]:
     """The stars of all vertices that are off the boundary, in sets without neighbours, for each domain as it is alone.
 
     triangles: (m, 3) counter-clockwise; domain: (m,) int, of each triangle; stars of over ``largest`` edges are left
-    out.
+    out, and so are those of vertices of fixed edges (f, 2).
     """
-    stars = find_stars(triangles, off_boundary(triangles, n_vertices), largest)
+    stars = find_stars(triangles, off_boundary(triangles, n_vertices, fixed), largest)
     number = _numbers_by_domain(triangles, domain, n_vertices)
     return [stars.rows(rows) for rows in independent_sets(stars, number)]
 
