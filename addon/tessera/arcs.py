@@ -40,9 +40,7 @@ class _Sampled:
     end: np.ndarray
 
 
-def resample_graph(
-    graph: Graph, edge_length: float | Callable[[np.ndarray], np.ndarray], corner_angle: float
-) -> Graph:
+def resample_graph(graph: Graph, edge_length: float | Callable[[np.ndarray], np.ndarray], corner_angle: float) -> Graph:
     """The graph with new vertices on its edges; those that are `kept`, and corners, stay.
 
     edge_length: one, or a function of points (n, 2); corner_angle: in radians. Loops over the arcs.

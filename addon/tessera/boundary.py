@@ -105,7 +105,8 @@ def knots_of(
     first = np.cumsum(length) - length
     loop = np.repeat(np.arange(len(length)), length)
     position = np.arange(len(start)) - first[loop] + 0.0
-    size = np.maximum.reduceat(np.abs(start - start[first][loop]).max(axis=1), first)
+    away = np.maximum(*(np.abs(ends - start[first][loop]).max(axis=1) for ends in (start, end)))
+    size = np.maximum.reduceat(away, first)
     share = np.ones(len(start))
     parts = np.ceil(np.linalg.norm(end - start, axis=1) / (_LONGEST_PIECE * size[loop]))
     found = []

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .contour import checked_points, signed_area, without_repeats
+from .contour import checked_points, meeting_error, signed_area, without_repeats
 from .errors import ContourError
 from .graph import Graph, graph_faces
 from .noding import TOLERANCE, Crossing, Noded, node_curves
-from .regions import crossing, face_regions, self_intersection
+from .regions import face_regions
 
 
 @dataclass(frozen=True)
@@ -80,8 +80,9 @@ def planar_domain(domain: Domain) -> PlanarDomain:
     noded = node_curves([_open(c) if k >= len(loops) else c for k, c in enumerate(curves)], closed, tolerance)
     if isinstance(noded, Crossing):
         raise _crossing(noded, len(loops), len(loops) + len(lines))
-    graph, touching = _graph(noded, len(loops), len(lines), domain.region, closed)
-    repeated = len(points) - len(np.unique(noded.point_of[len(noded.point_of) - len(points) :]))
+    places = noded.point_of[len(noded.point_of) - len(points) :]
+    graph, touching = _graph(noded, len(loops), len(lines), domain.region, places)
+    repeated = len(points) - len(np.unique(places))
     return PlanarDomain(loops, graph, _touching_warnings(noded.points[touching]) + _repeated_warnings(repeated))
 
 
@@ -103,12 +104,18 @@ def _checked_line(line: ArrayLike) -> np.ndarray:
     line = line[np.append(True, (line[1:] != line[:-1]).any(axis=1))] if len(line) else line
     if len(line) < 2 or (len(line) == 3 and np.array_equal(line[0], line[2])):
         place = tuple(map(float, line[0])) if len(line) else None
-        raise ContourError("too-few-points", "A line has fewer than two distinct points. Add points, or leave it out.", place)
+        message = "A line has fewer than two distinct points. Add points, or leave it out."
+        raise ContourError("too-few-points", message, place)
     return line
 
 
-def _graph(noded: Noded, n_loops: int, n_lines: int, region: Sequence[int] | None, closed: list[bool]) -> tuple[Graph, np.ndarray]:
-    """The graph with its regions, and the points (k,) where contours touch; raises if a line or point is misplaced."""
+def _graph(
+    noded: Noded, n_loops: int, n_lines: int, region: Sequence[int] | None, places: np.ndarray
+) -> tuple[Graph, np.ndarray]:
+    """The graph with its regions, and the points (k,) where contours touch; raises if a line or point is misplaced.
+
+    Its curves are contours, then lines, then points that must be vertices: `places` (v,) by number.
+    """
     faces = graph_faces(noded.points, noded.edges)
     of_face, touching = face_regions(noded, faces, n_loops, None if region is None else np.asarray(region))
     sides = of_face[faces.of_half_edge].reshape(2, -1).T
@@ -121,7 +128,6 @@ def _graph(noded: Noded, n_loops: int, n_lines: int, region: Sequence[int] | Non
     out = line_edges[(sides[line_edges] < 0).any(axis=1)]
     if len(out):
         raise _outside("Line", noded.points[noded.edges[out[0]]].mean(axis=0))
-    places = noded.point_of[len(noded.point_of) - (len(closed) - n_loops - n_lines) :]
     on = np.intersect1d(places, noded.edges[noded.edge[noded.curve < n_loops]])
     if len(on):
         raise _on_contour("A point lies on a contour", noded.points[on[0]])
@@ -148,15 +154,14 @@ def _crossing(found: Crossing, n_loops: int, n_curves: int) -> ContourError:
     if max(one, other) >= n_curves:
         return _on_contour("A point lies on a contour or a line", place)
     if max(one, other) < n_loops:
-        return self_intersection(place) if one == other else crossing(place)
+        return meeting_error(one == other, found.place)
     x, y = found.place
-    with_ = "a contour" if min(one, other) < n_loops else "itself" if one == other else "another line"
-    message = (
-        f"A line crosses {with_} near ({x:.9g}, {y:.9g}). Divide it there, so that both have a vertex at that place, or "
-        "move it."
-    )
+    where = f"near ({x:.9g}, {y:.9g})"
     if min(one, other) < n_loops:
-        message = f"A line crosses a contour near ({x:.9g}, {y:.9g}). Let it end there, or move it."
+        message = f"A line crosses a contour {where}. Let it end there, or move it."
+    else:
+        with_ = "itself" if one == other else "another line"
+        message = f"A line crosses {with_} {where}. Give both a vertex at that place, or move it."
     return ContourError("crossing", message, found.place)
 
 

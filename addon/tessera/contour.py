@@ -93,7 +93,7 @@ def checked_points(points: ArrayLike, name: str = "a contour") -> np.ndarray:
         raise ValueError(message + ("; a domain is a sequence of contours" if points.shape == (2,) else ""))
     bad = np.nonzero(~np.isfinite(points).all(axis=1))[0]
     if len(bad):
-        message = f"Point {bad[0]} (counting from 0) of {name.replace('a ', 'the ')} has a coordinate that is not a finite number. "
+        message = f"Point {bad[0]} (counting from 0) of {name} has a coordinate that is not a finite number. "
         raise ContourError("not-finite", message + "Remove the point or correct it.")
     return points
 
@@ -140,10 +140,10 @@ def _meeting_errors(results: list) -> tuple[dict[int, ContourError], bool]:
     pairs = crossing_pairs(start, end, domain)
     for first, second in pairs[np.unique(domain[pairs[:, 0]], return_index=True)[1]]:
         place = crossing_place(start, end, np.array([first, second]))
-        errors[int(domain[first])] = _meeting_error(loop[first] == loop[second], place)
+        errors[int(domain[first])] = meeting_error(loop[first] == loop[second], place)
     for first, second in _repeated_points(start, domain):
         same = loop[first] == loop[second]
-        errors.setdefault(int(domain[first]), _meeting_error(same, (float(start[first, 0]), float(start[first, 1]))))
+        errors.setdefault(int(domain[first]), meeting_error(same, (float(start[first, 0]), float(start[first, 1]))))
     return errors, len(pairs) <= MOST_PAIRS
 
 
@@ -155,7 +155,8 @@ def _repeated_points(points: np.ndarray, domain: np.ndarray) -> np.ndarray:
     return np.column_stack([one, other])[same]
 
 
-def _meeting_error(same_loop: bool, place: tuple[float, float]) -> ContourError:
+def meeting_error(same_loop: bool, place: tuple[float, float]) -> ContourError:
+    """The error of a contour that meets itself, "self-intersection", or of two that meet, "crossing"."""
     where = f"near ({place[0]:.9g}, {place[1]:.9g})"
     if same_loop:
         message = f"The contour crosses or touches itself {where}. Move points there to keep its edges apart."

@@ -45,9 +45,7 @@ def crossing_place(start: np.ndarray, end: np.ndarray, pair: np.ndarray) -> tupl
     return float(x), float(y)
 
 
-def close_pairs(
-    start: np.ndarray, end: np.ndarray, group: np.ndarray, distance: float = 0.0
-) -> Iterator[np.ndarray]:
+def close_pairs(start: np.ndarray, end: np.ndarray, group: np.ndarray, distance: float = 0.0) -> Iterator[np.ndarray]:
     """Blocks (k, 2) of pairs of segments of one group that may be as near as `distance`; a pair can come twice.
 
     Each group is halved by a line at its median, and a segment across the line is cut there. The line runs along x,

@@ -3,14 +3,13 @@
 What bounds a face is made of blocks: the contours of what is not part of the face, which may touch in a vertex; lines'
 edges, with the face on both sides; and points. One of them, the root, is around the face. Where a block's leftmost
 vertex is in no block that goes farther left, it gets a bridge to the left, and its rightmost one, to the right. Then
-from every block there is a way to the root that cannot avoid only what is left of the block or its leftmost vertex: from
-block to block, each by its leftmost vertex, around contours on either side, and along bridges; and so there is to the
-right. No vertex is on both, so the faces that are left are simple polygons, by the argument of `bridges.py`.
+from every block there is a way to the root, from block to block, each by its leftmost vertex, around contours on either
+side, and along bridges. All that it cannot avoid is left of the block, or its leftmost vertex; and of the way to the
+right, right of it. So no vertex blocks both, and the faces are simple polygons, by the argument of `bridges.py`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -51,8 +50,8 @@ def graph_polygons(
         number = np.concatenate([vertices, count + np.arange(len(net.points) - len(vertices))])
         points.append(net.points[len(vertices) :])
         count += len(points[-1])
-        new = slice(len(start), None)
-        bridges.append(np.column_stack([number[net.start[new]], number[net.end[new]], np.full(len(net.end[new]), owner)]))
+        ends = number[net.start[len(start) :]], number[net.end[len(start) :]]
+        bridges.append(np.column_stack([*ends, np.full(len(ends[0]), owner)]))
     points = np.concatenate(points)
     tail, head, owner = np.concatenate(bridges).T
     number = np.cumsum(inside) - 1
@@ -128,9 +127,7 @@ def _blocks(graph: Graph, faces: Faces, inside: np.ndarray) -> tuple[np.ndarray,
     start, end = np.split(ends, 2)
     walk, size = find_faces(graph.points[key % len(graph.points)], start, end, np.full(len(around), -1))
     n, m, alone = len(size), len(line), np.flatnonzero(graph.home >= 0)
-    block = np.concatenate(
-        [np.repeat(np.arange(n), size), np.tile(n + np.arange(m), 2), n + m + np.arange(len(alone))]
-    )
+    block = np.concatenate([np.repeat(np.arange(n), size), np.tile(n + np.arange(m), 2), n + m + np.arange(len(alone))])
     vertex = np.concatenate([key[start[walk]] % len(graph.points), graph.edges[line].T.ravel(), alone])
     of = np.concatenate([face[walk], np.tile(faces.of_half_edge[line], 2), faces.of_point[alone]])
     return of, vertex, block, n + m + len(alone)

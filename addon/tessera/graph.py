@@ -1,4 +1,4 @@
-"""Plane graphs: contours, lines and points of one domain, on common vertices, and the faces that they divide it into."""
+"""Plane graphs: the contours, lines and points of a domain on common vertices, and the faces between them."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def graph_faces(points: np.ndarray, edges: np.ndarray) -> Faces:
     walk_of = np.empty(len(tails), dtype=np.int64)
     walk_of[walk] = np.repeat(np.arange(len(size)), size)
     component, lowest = _components(points, edges)
-    around = walk_of[_outermost(points, tails, heads, np.flatnonzero(np.bincount(tails, minlength=len(points))), lowest)]
+    around = walk_of[_outermost(points, tails, heads, lowest)]
     bounded = np.ones(len(size), dtype=bool)
     bounded[around] = False
     ends = np.cumsum(size)
@@ -128,7 +128,7 @@ def connected(count: int, pairs: np.ndarray) -> np.ndarray:
         label = new
 
 
-def _outermost(points, tails, heads, ends, lowest) -> np.ndarray:
+def _outermost(points, tails, heads, lowest) -> np.ndarray:
     """Of each component's leftmost (then lowest) point, the half-edge that has the outside on its left.
 
     It is the steepest one there, as all go to the right. Components without edges have none.

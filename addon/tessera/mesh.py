@@ -31,7 +31,7 @@ class Report:
 
 @dataclass(frozen=True)
 class Mesh:
-    """vertices: (n, 2) float64, in the input's coordinates; triangles: (m, 3) int32, counter-clockwise; and their region.
+    """vertices: (n, 2) float64, in the input's coordinates; triangles: (m, 3) int32, counter-clockwise.
 
     region: (m,) int32, the number of the outer contour around each triangle among the contours that were given, or of
     the region that it is part of.

@@ -225,9 +225,7 @@ def mesh_domains(
     return [target.errors.get(number, result) for number, result in enumerate(results)]
 
 
-def _outlines(
-    results: list, nested: list[Nesting], planar: dict[int, PlanarDomain], numbers: list[int]
-) -> Outlines:
+def _outlines(results: list, nested: list[Nesting], planar: dict[int, PlanarDomain], numbers: list[int]) -> Outlines:
     """What bounds the domains of some numbers."""
     simple = [number for number in numbers if number not in planar]
     loops = [loop for number in simple for loop in results[number]]
@@ -307,7 +305,7 @@ def _regions(nested: list[Nesting]) -> tuple[np.ndarray, np.ndarray]:
 def _mesh_regions(
     outlines: Outlines, target: Target, flips: bool, smooth: int, watch: Stopwatch
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Mesh what outlines bound: vertices (n, 2), triangles (m, 3), the region of each (m,), fallbacks by region (r,)."""
+    """Mesh what outlines bound: vertices (n, 2), triangles (m, 3) and their regions (m,), fallbacks by region (r,)."""
     domain = outlines.domains
 
     def wanted(points: np.ndarray, region: np.ndarray) -> np.ndarray:

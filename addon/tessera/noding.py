@@ -72,7 +72,7 @@ def _incidences(points, start, end, curve, tolerance):
     merged = [np.zeros((0, 2), dtype=np.int64)]
     edge, share, vertex = [np.zeros(0, dtype=np.int64)], [np.zeros(0)], [np.zeros(0, dtype=np.int64)]
     for pairs in close_pairs(points[start], points[end], np.zeros(len(start), dtype=np.int64), tolerance):
-        one, other = np.concatenate([pairs, pairs, pairs[:, ::-1], pairs[:, ::-1]]).T
+        one = np.concatenate([pairs[:, 0], pairs[:, 0], pairs[:, 1], pairs[:, 1]])
         v = np.concatenate([start[pairs[:, 1]], end[pairs[:, 1]], start[pairs[:, 0]], end[pairs[:, 0]]])
         apart = (v != start[one]) & (v != end[one])
         one, v = one[apart], v[apart]

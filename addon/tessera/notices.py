@@ -14,7 +14,7 @@ LOST_AREA = 0.1  # of a curve's area, from which a coarser boundary is warned of
 def long_edge_warnings(
     start: np.ndarray, end: np.ndarray, target: Callable[[np.ndarray], np.ndarray]
 ) -> tuple[str, ...]:
-    """A warning where kept edges, from start to end (e, 2), are longer than the target, (n, 2) places -> (n,) lengths."""
+    """A warning where kept edges, from start to end (e, 2), are longer than the target at places (n, 2), or none."""
     lengths = np.linalg.norm(end - start, axis=1)
     wanted = target(0.5 * (start + end))
     long = np.count_nonzero(lengths > LONG * wanted)

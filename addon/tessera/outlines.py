@@ -41,7 +41,7 @@ class Outlines:
         return dict(zip(domain.tolist(), first.tolist(), strict=True))
 
     def edges(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Start and end (e, 2) of all edges, and the region of each (e,); in a graph, of all together, its first one."""
+        """Start and end (e, 2) of all edges, and the region of each (e,): of a graph's edges, its first one."""
         starts, ends, of = [np.zeros((0, 2))], [np.zeros((0, 2))], [np.zeros(0, dtype=np.int64)]
         if self.loops:
             start, end = edges_of(self.loops)

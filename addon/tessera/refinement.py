@@ -41,8 +41,9 @@ def refine(
     """Refine a mesh until its inner edges follow the sizing function.
 
     vertices: (n, 2); triangles: (m, 3); domain: (m,) int of each triangle; sizing: (k, 2) points and the domains (k,)
-    that they are in -> (k,) wanted edge lengths; fixed: (f, 2) edges that stay, as the boundary does. Returns vertices, the old ones first, triangles (t, 3), the old
-    triangle that each is part of (t,), and for each of those the fallbacks (m,).
+    that they are in -> (k,) wanted edge lengths; fixed: (f, 2) edges that stay, as the boundary does. Returns vertices,
+    the old ones first, triangles (t, 3), the old triangle that each is part of (t,), and for each of those the
+    fallbacks (m,).
     """
     parent = np.arange(len(triangles))
     fallbacks = np.zeros(len(triangles), dtype=np.int64)

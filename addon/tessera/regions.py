@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .contour import meeting_error
 from .errors import ContourError
 from .graph import Faces
 from .noding import Noded
@@ -14,8 +15,8 @@ def face_regions(noded: Noded, faces: Faces, n_loops: int, owner: np.ndarray | N
 
     The first curves of `noded` are closed contours; owner: (l,) which of several domains each of those bounds, or None
     for all the same. Inside a domain is what an odd number of its contours have around them. A region is a domain, or,
-    without owners, the inside of an outer contour, by number. Raises ContourError "self-intersection", "crossing" (contours of one
-    domain cross, or run along each other with the outside beside them) or "overlap" (of two domains).
+    without owners, the inside of an outer contour, by number. Raises ContourError "self-intersection", "crossing"
+    (contours of one domain cross, or run along each other with the outside beside them) or "overlap" (of two domains).
     """
     by_contour = owner is None
     owner = np.zeros(n_loops, dtype=np.int64) if by_contour else owner
@@ -82,14 +83,14 @@ def _touching(noded: Noded, edge, loop, owner) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _check_turns(noded: Noded, edge, loop, signed: np.ndarray) -> None:
-    """A contour that touches itself runs around every face once or not, always the same way, and along no edge twice."""
+    """A contour that touches itself runs around faces once, always the same way, and along no edge twice."""
     wrong = np.flatnonzero(signed.max(axis=0) - signed.min(axis=0) > 1)
     if len(wrong):
         ends = noded.edges[edge[loop == wrong[0]]].ravel()
-        raise self_intersection(noded.points[np.flatnonzero(np.bincount(ends) > 2)[0]])
+        raise _meeting(True, noded.points[np.flatnonzero(np.bincount(ends) > 2)[0]])
     key, count = np.unique(np.column_stack([edge, loop]), axis=0, return_counts=True)
     if (count > 1).any():
-        raise self_intersection(noded.points[noded.edges[key[count > 1][0, 0]]].mean(axis=0))
+        raise _meeting(True, noded.points[noded.edges[key[count > 1][0, 0]]].mean(axis=0))
 
 
 def _check_crossings(noded: Noded, edge, loop, wound: np.ndarray, pairs: np.ndarray) -> None:
@@ -98,7 +99,7 @@ def _check_crossings(noded: Noded, edge, loop, wound: np.ndarray, pairs: np.ndar
         a, b = wound[:, one] > 0, wound[:, other] > 0
         if (a & b).any() and (a & ~b).any() and (b & ~a).any():
             common = np.intersect1d(noded.edges[edge[loop == one]], noded.edges[edge[loop == other]])
-            raise crossing(noded.points[common[0]])
+            raise _meeting(False, noded.points[common[0]])
 
 
 def _check_overlaps(noded: Noded, faces: Faces, covered: np.ndarray) -> None:
@@ -108,8 +109,8 @@ def _check_overlaps(noded: Noded, faces: Faces, covered: np.ndarray) -> None:
         half_edge = np.flatnonzero(faces.of_half_edge == several[0])[0]
         x, y = noded.points[noded.edges[half_edge % len(noded.edges)]].mean(axis=0)
         message = (
-            f"Regions {one} and {other} (counting from 0) overlap near ({x:.9g}, {y:.9g}). Move their contours apart, or "
-            "cut one of them out of the other, as a hole."
+            f"Regions {one} and {other} (counting from 0) overlap near ({x:.9g}, {y:.9g}). Move their contours apart, "
+            "or cut one of them out of the other, as a hole."
         )
         raise ContourError("overlap", message, (float(x), float(y)))
 
@@ -122,21 +123,8 @@ def _check_double_edges(noded: Noded, faces: Faces, edge, loop, owner, covered: 
     left, right = np.split(faces.of_half_edge, 2)
     open_ = ~(covered[left[double], domain] & covered[right[double], domain])
     if open_.any():
-        raise crossing(noded.points[noded.edges[double[open_][0]]].mean(axis=0))
+        raise _meeting(False, noded.points[noded.edges[double[open_][0]]].mean(axis=0))
 
 
-def self_intersection(place: np.ndarray) -> ContourError:
-    """The error of a contour that meets itself."""
-    x, y = map(float, place)
-    message = f"The contour crosses or touches itself near ({x:.9g}, {y:.9g}). Move points there to keep its edges apart."
-    return ContourError("self-intersection", message, (x, y))
-
-
-def crossing(place: np.ndarray) -> ContourError:
-    """The error of two contours that meet so that there is no telling what is inside."""
-    x, y = map(float, place)
-    message = (
-        f"Two contours cross, or run along each other, near ({x:.9g}, {y:.9g}). Move them apart, or join them into one "
-        "contour."
-    )
-    return ContourError("crossing", message, (x, y))
+def _meeting(same_loop: bool, place: np.ndarray) -> ContourError:
+    return meeting_error(same_loop, (float(place[0]), float(place[1])))

@@ -31,7 +31,8 @@ def improve(
     """Relax a mesh, then mesh its poor cavities again and relax, a few times.
 
     vertices: (n, 2); triangles: (m, 3); domain: (m,) int from 0: each domain is treated as it would be alone;
-    fixed: (f, 2) edges that stay, as the boundary does. Returns the same of the better mesh, where vertices that it has no use for stay, and the fallbacks of each domain.
+    fixed: (f, 2) edges that stay, as the boundary does. Returns the same of the better mesh, where vertices that it has
+    no use for stay, and the fallbacks of each domain.
     """
     fallbacks = np.zeros(int(domain.max()) + 1, dtype=np.int64)
     with watch("relaxation"):
@@ -104,7 +105,7 @@ def _cavities(triangles: np.ndarray, quality: np.ndarray, free: np.ndarray) -> n
 
 
 def _swallowing(triangles: np.ndarray, cavity: np.ndarray, fixed: np.ndarray) -> np.ndarray:
-    """The cavities that have a fixed edge between two of their elements, or one of its vertices (all around the end)."""
+    """The cavities that have a fixed edge between two of their elements, or one of its vertices amid them."""
     inside = np.flatnonzero(cavity >= 0)
     start, end = triangles[inside].ravel(), np.roll(triangles[inside], -1, axis=1).ravel()
     label = np.repeat(cavity[inside], 3)
