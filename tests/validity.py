@@ -6,6 +6,7 @@ exactly once: the number of triangles over a point is the winding number of the 
 """
 
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 
@@ -221,7 +222,7 @@ def check_many(
 
 
 def check_partition(vertices: np.ndarray, triangles: np.ndarray) -> None:
-    """Assert that all triangles are counter-clockwise, that they meet in whole edges, and no vertex is spare or double."""
+    """Assert that triangles are counter-clockwise and meet in whole edges, and that no vertex is spare or double."""
     assert np.isfinite(vertices).all() and triangles.min() >= 0
     assert len(np.unique(triangles)) == len(vertices), "vertex that no triangle uses, or does not exist"
     assert len(np.unique(vertices, axis=0)) == len(vertices), "two vertices in one place"
@@ -279,27 +280,26 @@ def check_points(vertices: np.ndarray, points, tolerance: float = 0.0) -> None:
 def check_line(vertices: np.ndarray, triangles: np.ndarray, line, size: float, keep: bool = False) -> None:
     """Assert that edges of the mesh lead along a polyline (k, 2), from its start to its end, with vertices on it.
 
-    size: of the domain; keep: all the line's vertices are the mesh's; otherwise the first and the last.
+    size: of the domain; keep: all the line's vertices are the mesh's; otherwise the first and the last of an open one.
     """
     line = np.asarray(line, dtype=float)
     line = line[np.append(True, np.any(line[1:] != line[:-1], axis=1))]
-    edges = {
-        frozenset(e)
-        for e in np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]).tolist()
-    }
-    stops = []
-    passed = 0.0
-    for a, b in zip(line[:-1], line[1:], strict=True):
+    sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    edges = {frozenset(pair) for pair in sides.tolist()}
+    stops, passed, tolerance = [], 0.0, 3e-6 * size
+    for a, b in pairwise(line):
         length = float(np.linalg.norm(b - a))
         share = np.clip((vertices - a) @ (b - a) / length**2, 0, 1)
-        on = np.flatnonzero(np.linalg.norm(vertices - a - share[:, None] * (b - a), axis=1) <= 3e-6 * size)
+        on = np.flatnonzero(np.linalg.norm(vertices - a - share[:, None] * (b - a), axis=1) <= tolerance)
         stops += [(passed + share[k] * length, int(k)) for k in on]
         passed += length
     stops.sort()
     path = [k for n, (_, k) in enumerate(stops) if n == 0 or k != stops[n - 1][1]]
-    assert stops and stops[0][0] <= 3e-6 * size and stops[-1][0] >= passed - 3e-6 * size, (
-        "the line's ends are no vertices"
-    )
-    assert all(frozenset(pair) in edges for pair in zip(path[:-1], path[1:], strict=True)), "the line is not of edges"
+    if np.array_equal(line[0], line[-1]):
+        path += path[:1] if path[0] != path[-1] else []
+    else:
+        assert stops[0][0] <= tolerance and stops[-1][0] >= passed - tolerance, "a line's end is no vertex"
+    assert len(path) > 1, "the line has no edge"
+    assert all(frozenset(pair) in edges for pair in pairwise(path)), "the line is not of edges"
     if keep:
-        check_points(vertices, line, 3e-6 * size)
+        check_points(vertices, line, tolerance)

@@ -45,7 +45,7 @@ def random_constraints(seed: int, loops) -> tuple[np.ndarray, list[np.ndarray]]:
     size = float((high - low).max())
     taken = [pair for loop in loops for pair in segments(loop, True)]
     points, lines = [], []
-    for _ in range(60):
+    for _ in range(25):
         places = rng.uniform(low, high, (int(rng.integers(1, 6)), 2))
         places[1:] = places[:1] + (places[1:] - places[:1]) * rng.choice([0.05, 0.3, 1.0])
         if lines and rng.random() < 0.3 and len(places) > 1:

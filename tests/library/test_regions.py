@@ -1,5 +1,7 @@
 """Several regions as one mesh: shared edges have the same vertices, every triangle knows its region."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -21,10 +23,10 @@ def bricks(seed: int) -> list[list[np.ndarray]]:
     heights = np.cumsum(np.append(0, rng.uniform(0.3, 1.0, rng.integers(1, 4))))
     tilt = rng.uniform(-0.3, 0.3, 2)
     regions = []
-    for low, high in zip(heights[:-1], heights[1:], strict=True):
-        joints = np.concatenate([[0], np.sort(rng.uniform(0.1, 2.9, rng.integers(0, 4))), [3]])
+    for low, high in pairwise(heights):
+        joints = np.sort(np.append(rng.uniform(0.1, 2.9, rng.integers(0, 4)), [0, 3]))
         joints = joints[np.append(True, np.diff(joints) > 0.05)]
-        for left, right in zip(joints[:-1], joints[1:], strict=True):
+        for left, right in pairwise(joints):
             brick = np.array([[left, low], [right, low], [right, high], [left, high]])
             size = 0.3 * min(right - left, high - low)
             inner = circle(int(rng.integers(3, 9))) * size + [0.5 * (left + right), 0.5 * (low + high)]
