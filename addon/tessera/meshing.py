@@ -18,7 +18,7 @@ from .errors import ContourError
 from .flips import flip_edges
 from .gradation import Target, prepare
 from .mesh import Mesh, make_mesh
-from .notices import long_edge_warnings, lost_area_warnings
+from .notices import gap_warnings, long_edge_warnings, lost_area_warnings, repeated_warnings
 from .outlines import Outlines
 from .placement import MOST_INNER
 from .refinement import refine
@@ -201,6 +201,8 @@ def mesh_domains(
         outlines = _outlines(results, nested, planar, numbers)
         if boundary == "resample":
             outlines = _resampled(outlines, target, limits.corner_angle)
+        start, end, of = outlines.edges()
+        gaps = gap_warnings(start, end, outlines.domains[of], target)
     if numbers:
         vertices, triangles, owner, fallbacks = _mesh_regions(outlines, target, flips, smooth, watch)
         domain, first = outlines.domains, outlines.firsts
@@ -214,12 +216,14 @@ def mesh_domains(
             else:
                 area = one.graph.area() if one else enclosed_area(results[number], nested[number])
                 warnings = lost_area_warnings(area, part, elements, target.most[number])
+            given = domains[number]
+            repeated = repeated_warnings(given.loops if isinstance(given, Domain) else given, results[number])
             results[number] = make_mesh(
                 part,
                 elements,
                 region - first[number],
                 fallbacks=int(fell[number]),
-                warnings=warnings + (one.warnings if one else ()),
+                warnings=warnings + (one.warnings if one else ()) + gaps.get(number, ()) + repeated,
                 seconds=watch.seconds,
             )
     return [target.errors.get(number, result) for number, result in enumerate(results)]

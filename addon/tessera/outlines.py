@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -28,13 +29,13 @@ class Outlines:
     domain: np.ndarray
     graphs: dict[int, Graph]
 
-    @property
+    @cached_property
     def domains(self) -> np.ndarray:
         """(r,) the domain of each region."""
         count = [graph.n_regions for graph in self.graphs.values()]
         return np.concatenate([self.domain, np.repeat(np.array(list(self.graphs), dtype=np.int64), count)])
 
-    @property
+    @cached_property
     def firsts(self) -> dict[int, int]:
         """The number of each domain's first region."""
         domain, first = np.unique(self.domains, return_index=True)

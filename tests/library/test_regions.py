@@ -190,3 +190,16 @@ def test_what_cannot_be_told_apart_is_an_error(reason, loops):
     with pytest.raises(tessera.ContourError) as error:
         tessera.mesh(loops, 0.2)
     assert error.value.reason == reason and error.value.place is not None
+
+
+def test_tiny_gaps_and_repeated_points_are_warned_of():
+    hole = tessera.mesh([SQUARE, SQUARE / 5 + [0.001, 0.4]], 0.1)
+    check_mesh(hole.vertices, hole.triangles, [SQUARE, SQUARE / 5 + [0.001, 0.4]], keep=False)
+    assert "as near to each other as 0.001 at (0.001," in hole.report.warnings[0]
+    beside = tessera.mesh([SQUARE, SQUARE + [1.0005, 0.1]], 0.1)
+    assert "as near to each other as 0.0005" in beside.report.warnings[0]
+    assert tessera.mesh([SQUARE, SQUARE + [1.1, 0.1]], 0.1).report.warnings == ()
+    assert tessera.mesh([np.repeat(SQUARE, 2, axis=0)], 0.3).report.warnings == (
+        "4 repeated points of contours are left out",
+    )
+    assert tessera.mesh([np.concatenate([SQUARE, SQUARE[:1]])], 0.3).report.warnings == ()
