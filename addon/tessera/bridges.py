@@ -50,6 +50,13 @@ class Net:
     start: np.ndarray
     end: np.ndarray
 
+    def ends(self) -> tuple[np.ndarray, np.ndarray]:
+        """The left and the right end (k,) of each segment that is not upright."""
+        x = self.points[:, 0]
+        rises = np.sign(x[self.end] - x[self.start])
+        left, right = np.where(rises > 0, [self.start, self.end], [self.end, self.start])[:, rises != 0]
+        return left, right
+
 
 def bridge_holes(
     loops: Sequence[np.ndarray],

@@ -18,7 +18,11 @@ from .bridges import Net, add_bridges, wanted_between
 from .division import Polygons
 from .faces import find_faces
 from .graph import Faces, Graph, graph_faces, half_edges
+from .rows import with_rows
 from .spacing import Target
+
+# With more points in a face, looking for each one's bridges would take long.
+_MANY = 50
 
 
 def graph_polygons(
@@ -45,8 +49,12 @@ def graph_polygons(
         vertices, ends = np.unique(own, return_inverse=True)
         start, end = ends.reshape(own.shape).T
         net = Net(graph.points[vertices], spacing[vertices], start, end)
-        tips = (np.searchsorted(vertices, tips) for tips in (left, right))
-        net = add_bridges(net, *tips, longest, wanted)
+        alone = start[start == end]
+        left, right = (np.searchsorted(vertices, tips) for tips in (left, right))
+        if len(alone) > _MANY:
+            net = with_rows(net, alone, owner, longest, target)
+            left, right = np.setdiff1d(left, net.ends()[1]), np.setdiff1d(right, net.ends()[0])
+        net = add_bridges(net, left, right, longest, wanted)
         number = np.concatenate([vertices, count + np.arange(len(net.points) - len(vertices))])
         points.append(net.points[len(vertices) :])
         count += len(points[-1])

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from .crossings import close_pairs
 from .sizing import LONG
+from .spacing import Target
 
 GAP = 0.02  # of the target edge length, from which two edges of a boundary that share no vertex are close
 LOST_AREA = 0.1  # of a curve's area, from which a coarser boundary is warned of
@@ -44,13 +45,11 @@ def lost_area_warnings(area: float, vertices: np.ndarray, triangles: np.ndarray,
     )
 
 
-def gap_warnings(
-    start: np.ndarray, end: np.ndarray, domain: np.ndarray, target: Target
-) -> dict[int, tuple[str, ...]]:
+def gap_warnings(start: np.ndarray, end: np.ndarray, domain: np.ndarray, target: Target) -> dict[int, tuple[str, ...]]:
     """By domain, a warning where edges that share no vertex come very near to each other.
 
-    start, end (e, 2), domain (e,): all edges; target: points (n, 2) of domains (n,) -> (n,) wanted edge lengths. Near is
-    what is a small share of that and of both edges.
+    start, end (e, 2), domain (e,): all edges; target: points (n, 2) of domains (n,) -> (n,) wanted edge lengths. Near
+    is what is a small share of that and of both edges.
     """
     if not len(start):
         return {}
@@ -75,8 +74,8 @@ def gap_warnings(
     number, first = np.unique(of[order], return_index=True)
     return {
         int(n): (
-            f"edges come as near to each other as {gap[k]:.2g} at ({place[k, 0]:.9g}, {place[k, 1]:.9g}), a small part of "
-            "the target edge length, and elements between them are thin: move them apart, or join them",
+            f"edges come as near to each other as {gap[k]:.2g} at ({place[k, 0]:.9g}, {place[k, 1]:.9g}), a small part "
+            "of the target edge length, and elements between them are thin: move them apart, or join them",
         )
         for n, k in zip(number, order[first], strict=True)
     }
