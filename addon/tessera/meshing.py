@@ -8,9 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arcs import resample_graph
 from .assembly import mean_edge_lengths, mesh_cells, wanted_edge_lengths
-from .boundary import resample_loops
 from .constraints import Domain, PlanarDomain, planar_domains
 from .contour import Nesting, clean_domains, clean_loop, edges_of, nesting, signed_area
 from .division import divide
@@ -19,7 +17,7 @@ from .flips import flip_edges
 from .gradation import Target, prepare
 from .mesh import Mesh, make_mesh
 from .notices import gap_warnings, long_edge_warnings, lost_area_warnings, repeated_warnings
-from .outlines import Outlines
+from .outlines import Outlines, outlines_of, resampled
 from .placement import MOST_INNER
 from .refinement import refine
 from .remeshing import improve
@@ -198,9 +196,9 @@ def mesh_domains(
         results = [errors.get(number, result) for number, result in enumerate(results)]
     with watch("boundary"):
         numbers = [number for number, result in enumerate(results) if not isinstance(result, ContourError)]
-        outlines = _outlines(results, nested, planar, numbers)
+        outlines = outlines_of(results, nested, planar, numbers)
         if boundary == "resample":
-            outlines = _resampled(outlines, target, limits.corner_angle)
+            outlines = resampled(outlines, target, limits.corner_angle)
         start, end, of = outlines.edges()
         gaps = gap_warnings(start, end, outlines.domains[of], target)
     if numbers:
@@ -227,27 +225,6 @@ def mesh_domains(
                 seconds=watch.seconds,
             )
     return [target.errors.get(number, result) for number, result in enumerate(results)]
-
-
-def _outlines(results: list, nested: list[Nesting], planar: dict[int, PlanarDomain], numbers: list[int]) -> Outlines:
-    """What bounds the domains of some numbers."""
-    simple = [number for number in numbers if number not in planar]
-    loops = [loop for number in simple for loop in results[number]]
-    domain = np.repeat(simple, [len(results[number]) for number in simple]).astype(np.int64)
-    graphs = {number: planar[number].graph for number in numbers if number in planar}
-    return Outlines(loops, *_regions([nested[number] for number in simple]), domain, graphs)
-
-
-def _resampled(outlines: Outlines, target: Target, corner_angle: float) -> Outlines:
-    """The same with vertices at the target edge length."""
-    loops, graphs = outlines.loops, {}
-    if loops:
-        spacing = target.most[outlines.domain] if target.constant else target
-        loops = resample_loops(loops, spacing, outlines.domain, corner_angle)
-    for number, graph in outlines.graphs.items():
-        spacing = float(target.most[number]) if target.constant else target.inside(number)
-        graphs[number] = resample_graph(graph, spacing, corner_angle)
-    return replace(outlines, loops=loops, graphs=graphs)
 
 
 def checked_domain(
@@ -287,23 +264,6 @@ def enclosed_area(loops: list[np.ndarray], nested: Nesting) -> float:
     """The area of a domain, without that of its holes; loops: counter-clockwise."""
     areas = np.array([signed_area(loop) for loop in loops])
     return float(areas[nested.outer].sum() - areas[nested.holes].sum())
-
-
-def _regions(nested: list[Nesting]) -> tuple[np.ndarray, np.ndarray]:
-    """Of all loops of domains, one behind the other: the number of the outer contour around each (l,), and the holes.
-
-    An outer contour is its own; the numbers count all the loops.
-    """
-    region, is_hole, first = [], [], 0
-    for loops in nested:
-        own = np.arange(len(loops.outer) + len(loops.holes))
-        own[loops.holes] = loops.parent
-        region.append(own + first)
-        is_hole.append(np.isin(np.arange(len(own)), loops.holes))
-        first += len(own)
-    if not region:
-        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=bool)
-    return np.concatenate(region), np.concatenate(is_hole)
 
 
 def _mesh_regions(

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
+from .arcs import resample_graph
+from .boundary import resample_loops
 from .bridges import bridge_holes
-from .contour import edges_of
+from .constraints import PlanarDomain
+from .contour import Nesting, edges_of
 from .cuts import graph_polygons
 from .division import Polygons
+from .gradation import Target
 from .graph import Graph
-from .spacing import Target
+from .spacing import Target as LengthAt
 
 
 @dataclass(frozen=True)
@@ -64,7 +68,7 @@ class Outlines:
         return own
 
     def polygons(
-        self, edge_length: np.ndarray, target: Target | None
+        self, edge_length: np.ndarray, target: LengthAt | None
     ) -> tuple[np.ndarray, Polygons, np.ndarray | None]:
         """Points (p, 2), the polygons that tile the regions, and edges (f, 2) that stay, a point by itself too.
 
@@ -91,6 +95,44 @@ class Outlines:
         return np.concatenate(points), polygons, np.concatenate(fixed)
 
 
-def _shifted(target: Target | None, first: int) -> Target | None:
+def outlines_of(results: list, nested: list[Nesting], planar: dict[int, PlanarDomain], numbers: list[int]) -> Outlines:
+    """What bounds some domains: of all, the clean loops (or errors), how they are nested, and the planar ones."""
+    simple = [number for number in numbers if number not in planar]
+    loops = [loop for number in simple for loop in results[number]]
+    domain = np.repeat(simple, [len(results[number]) for number in simple]).astype(np.int64)
+    graphs = {number: planar[number].graph for number in numbers if number in planar}
+    return Outlines(loops, *_regions([nested[number] for number in simple]), domain, graphs)
+
+
+def resampled(outlines: Outlines, target: Target, corner_angle: float) -> Outlines:
+    """The same with new vertices at the target edge length; corner_angle: in radians."""
+    loops, graphs = outlines.loops, {}
+    if loops:
+        spacing = target.most[outlines.domain] if target.constant else target
+        loops = resample_loops(loops, spacing, outlines.domain, corner_angle)
+    for number, graph in outlines.graphs.items():
+        spacing = float(target.most[number]) if target.constant else target.inside(number)
+        graphs[number] = resample_graph(graph, spacing, corner_angle)
+    return replace(outlines, loops=loops, graphs=graphs)
+
+
+def _regions(nested: list[Nesting]) -> tuple[np.ndarray, np.ndarray]:
+    """Of all loops of domains, one behind the other: the number of the outer contour around each (l,), and the holes.
+
+    An outer contour is its own; the numbers count all the loops.
+    """
+    region, is_hole, first = [], [], 0
+    for loops in nested:
+        own = np.arange(len(loops.outer) + len(loops.holes))
+        own[loops.holes] = loops.parent
+        region.append(own + first)
+        is_hole.append(np.isin(np.arange(len(own)), loops.holes))
+        first += len(own)
+    if not region:
+        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=bool)
+    return np.concatenate(region), np.concatenate(is_hole)
+
+
+def _shifted(target: LengthAt | None, first: int) -> LengthAt | None:
     """The target for owners that are numbered from `first` on."""
     return None if target is None else lambda places, owner: target(places, owner + first)
