@@ -6,6 +6,7 @@ functions here returns; `smallest` joins any of them.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -175,6 +176,10 @@ def by_thickness(elements: float = 3) -> FromLoops:
     elements = positive(elements, "by_thickness's number of elements")
 
     def prepare(loops: list[np.ndarray], limits: Limits) -> list[Part]:
+        # A hole that another region fills is none, and there is nothing across between the two.
+        places = [frozenset(map(tuple, loop.tolist())) for loop in loops]
+        count = Counter(places)
+        loops = [loop for loop, own in zip(loops, places, strict=True) if count[own] % 2]
         holes = set(nesting(loops).holes.tolist())
         turned = [loop[::-1] if number in holes else loop for number, loop in enumerate(loops)]
         start, end = edges_of(turned)

@@ -203,3 +203,10 @@ def test_tiny_gaps_and_repeated_points_are_warned_of():
         "4 repeated points of contours are left out",
     )
     assert tessera.mesh([np.concatenate([SQUARE, SQUARE[:1]])], 0.3).report.warnings == ()
+
+
+def test_a_hole_that_another_region_fills_is_no_thin_part():
+    regions = [[SQUARE * 4, circle(12) + 2], [circle(12) + 2]]
+    plain = tessera.mesh_regions(regions, 0.5)
+    sized = tessera.mesh_regions(regions, 0.5, sizing=tessera.by_thickness(2))
+    assert sized.report.n_triangles < 1.5 * plain.report.n_triangles
