@@ -184,6 +184,9 @@ def by_thickness(elements: float = 3) -> FromLoops:
         turned = [loop[::-1] if number in holes else loop for number, loop in enumerate(loops)]
         start, end = edges_of(turned)
         here, there = thin_parts(start, end, elements, limits.longest, limits.shortest_found)
+        # Contours that lie beside each other have nothing in between.
+        apart = np.linalg.norm(there - here, axis=1) > 1e-9 * np.ptp(start, axis=0).max()
+        here, there = here[apart], there[apart]
         across = np.linalg.norm(there - here, axis=1) / elements
         return [_places(here, there, np.maximum(across, limits.shortest_found), limits.slope)]
 
