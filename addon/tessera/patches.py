@@ -11,6 +11,8 @@ import numpy as np
 from .edges import among
 from .scheme import LARGEST_CONTOUR
 
+_IRREGULAR = 0.95  # the quality below which an element at a vertex that has not six neighbours is worth a patch
+
 
 def find_patches(
     triangles: np.ndarray,
@@ -53,11 +55,11 @@ def _around_elements(
 def _around_vertices(
     triangles: np.ndarray, quality: np.ndarray, free: np.ndarray, poor: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """As `_around_elements`, around vertices and their neighbours, if they have a poor element or not six."""
+    """As `_around_elements`, around vertices and their neighbours; of those with not six, more are worth a try."""
     corners, n = triangles.ravel(), len(free)
     count, worst = np.bincount(corners, minlength=n), np.ones(n)
     np.minimum.at(worst, corners, np.repeat(quality, 3))
-    chosen = np.flatnonzero(free & (count > 0) & ((count != 6) | (worst < poor)))
+    chosen = np.flatnonzero(free & (count > 0) & (worst < np.where(count == 6, poor, _IRREGULAR)))
     number = np.full(n, -1)
     number[chosen] = np.arange(len(chosen))
     near = triangles[(number[triangles] >= 0).any(axis=1)]
