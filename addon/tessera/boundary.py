@@ -39,8 +39,8 @@ def resample_loops(
     without it each loop is a domain of its own. corner_angle: in radians.
 
     The vertices lie on the given polyline. Corners (turning by more than the corner angle) stay; between two of them
-    are as many edges as come nearest to `edge_length`, equally long along the polyline, or as long as it is there. A
-    loop without corners starts at its leftmost vertex, wherever its list starts. Where such spacing would make polygons
+    are as many edges as come near `edge_length`, a number that is easily halved if there are many, equally long along
+    the polyline, or as long as it is there. A loop without corners starts at its leftmost vertex, wherever its list starts. Where such spacing would make polygons
     meet, or put one inside another or out of it that was not, given vertices are inserted until it does not.
     """
     length = np.array([len(loop) for loop in loops])
@@ -158,9 +158,11 @@ def count_edges(passed: np.ndarray, fewest: int = 3) -> np.ndarray:
 
 def halvable(n_edges: np.ndarray) -> np.ndarray:
     """Numbers of edges near these (a,), by at most a tenth, that can be halved a few times (`coarsening.py`)."""
+    found = n_edges
     for parts in (2, 4, 8):
-        n_edges = np.where(n_edges >= 5 * parts, parts * ((n_edges + parts // 2) // parts), n_edges)
-    return n_edges
+        near = parts * ((n_edges + parts // 2) // parts)
+        found = np.where(10 * np.abs(near - n_edges) <= n_edges, near, found)
+    return found
 
 
 def even_spacing(arc_start: np.ndarray, position: np.ndarray, passed: np.ndarray, n_edges: np.ndarray) -> np.ndarray:

@@ -30,9 +30,11 @@ def checked_steps(steps: int, name: str = "smooth") -> int:
     return int(steps)
 
 
-def smooth(vertices: np.ndarray, triangles: np.ndarray, steps: int) -> np.ndarray:
-    """`smooth_in_steps` of one mesh, at once."""
-    return finish(smooth_in_steps(vertices, triangles, steps, np.zeros(len(triangles), dtype=np.int64), Stopwatch()))
+def smooth(vertices: np.ndarray, triangles: np.ndarray, steps: int, domain: np.ndarray | None = None) -> np.ndarray:
+    """`smooth_in_steps`, at once; without domains all are one."""
+    if domain is None:
+        domain = np.zeros(len(triangles), dtype=np.int64)
+    return finish(smooth_in_steps(vertices, triangles, steps, domain, Stopwatch()))
 
 
 def smooth_in_steps(
