@@ -1,4 +1,4 @@
-"""Build the extension with Blender's own command: a zip for each platform of blender_manifest.toml, in build/extension/.
+"""Build the extension with Blender's own command: a zip for each platform of the manifest, in build/extension/.
 
 Each holds the add-on, the networks, and the onnxruntime wheels of its platform, those of requirements/wheels.lock: with
 another or none of them there is no zip. The Blender is that of the environment variable BLENDER, or else the same

@@ -11,6 +11,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 LOCK = ROOT / "requirements" / "wheels.lock"
+OTHERS = ROOT / "requirements" / "other_wheels.lock"  # older and newer ones, which a test tries the add-on with
 WHEELS = ROOT / "wheels"
 
 
@@ -27,18 +28,18 @@ def main() -> int:
     return 1 if wrong else 0
 
 
-def unlike_the_lock() -> list[str]:
+def unlike_the_lock(lock: Path = LOCK) -> list[str]:
     """The names of the locked wheels that are missing in wheels/, or whose SHA-256 is another."""
-    return [name for digest, name in locked() if not _is(WHEELS / name, digest)]
+    return [name for digest, name in locked(lock) if not _is(WHEELS / name, digest)]
 
 
 def _is(path: Path, digest: str) -> bool:
     return path.exists() and hashlib.sha256(path.read_bytes()).hexdigest() == digest
 
 
-def locked() -> list[tuple[str, str]]:
+def locked(lock: Path = LOCK) -> list[tuple[str, str]]:
     """(SHA-256, file name) for each wheel of the lock."""
-    return [(digest, name) for digest, name in (line.split() for line in LOCK.read_text().splitlines())]
+    return [(digest, name) for digest, name in (line.split() for line in lock.read_text().splitlines())]
 
 
 def fetch(name: str) -> None:

@@ -11,12 +11,14 @@ from .errors import ContourError
 from .mesh import Mesh, Report
 from .meshing import mesh, mesh_contour, mesh_many
 from .quality import element_quality
+from .runtime import RuntimeProblem
 from .sizing import by_curvature, by_distance, by_thickness, from_values, smallest
 
 __all__ = [
     "ContourError",
     "Mesh",
     "Report",
+    "RuntimeProblem",
     "by_curvature",
     "by_distance",
     "by_thickness",

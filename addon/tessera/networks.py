@@ -10,9 +10,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import onnxruntime
+
+from .runtime import open_session
+
+if TYPE_CHECKING:
+    import onnxruntime
 
 FOLDER = Path(__file__).resolve().parents[2] / "onnx_models"
 
@@ -28,13 +33,8 @@ _CALL_SIZE = 1 << 12
 
 @cache
 def session(role: str) -> onnxruntime.InferenceSession:
-    """The session of ``nn1``, ``nn2_scores``, ``nn2_moves`` or ``nn3``; opened once."""
-    options = onnxruntime.SessionOptions()
-    options.log_severity_level = 3
-    options.intra_op_num_threads = 1
-    # Threads that wait by spinning slow everything else down, and calls here are many and short.
-    options.add_session_config_entry("session.intra_op.allow_spinning", "0")
-    return onnxruntime.InferenceSession(FOLDER / f"{role}.onnx", options, providers=["CPUExecutionProvider"])
+    """The session of ``nn1``, ``nn2_scores``, ``nn2_moves`` or ``nn3``; opened once. Raises RuntimeProblem."""
+    return open_session(FOLDER / f"{role}.onnx")
 
 
 def count_inner_vertices(contour: np.ndarray, n_contour: np.ndarray, l_s: np.ndarray) -> np.ndarray:

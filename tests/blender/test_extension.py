@@ -1,4 +1,4 @@
-"""The extension's zips: what is in them, and that the wheels in them are the pinned ones, for the machines they name."""
+"""The extension's zips: what is in them, and that their wheels are the pinned ones, for the machines they name."""
 
 import compileall
 import hashlib
