@@ -1,0 +1,83 @@
+"""What an object has besides its geometry, given to another."""
+
+import bpy
+
+# What is the other object's own, what follows from the rest, and what is copied by a way of its own.
+_NOT_COPIED = frozenset(
+    {
+        "rna_type", "name", "data", "type", "tag", "use_fake_user", "library", "asset_data", "override_library",
+        "matrix_world", "matrix_local", "matrix_basis", "parent", "parent_type", "parent_bone", "parent_vertices",
+        "active_material", "active_material_index", "active_shape_key_index", "show_only_shape_key", "mode",
+        "use_simulation_cache", "instance_type", "instance_collection",
+    }
+)  # fmt: skip
+
+
+def copy_object(source: bpy.types.Object, target: bpy.types.Object, everything: bool = False) -> None:
+    """Give an object the source's transform, parent, constraints, display and custom properties.
+
+    everything: also its animation, and what add-ons keep with an object.
+    """
+    target.rotation_mode = source.rotation_mode  # first, as a change of mode converts the rotation
+    target.parent = source.parent
+    for name in ("parent_type", "parent_bone", "parent_vertices"):
+        setattr(target, name, getattr(source, name))
+    copy_settings(source, target, everything)
+    for constraint in source.constraints:
+        target.constraints.copy(constraint)
+    copy_custom_properties(source, target)
+    if everything:
+        _copy_animation(source, target)
+
+
+def link_beside(source: bpy.types.Object, target: bpy.types.Object) -> None:
+    """Link to the source's collections; where none can be linked to (they are a library's), to the scene's own."""
+    editable = [collection for collection in source.users_collection if collection.library is None]
+    for collection in editable or [bpy.context.scene.collection]:
+        collection.objects.link(target)
+
+
+def copy_settings(source: bpy.types.bpy_struct, target: bpy.types.bpy_struct, of_add_ons: bool = False) -> None:
+    """Every setting of the source that the target has and that can be set, except what is an object's own.
+
+    of_add_ons: also those that Blender knows only while an add-on is on.
+    """
+    for prop in source.bl_rna.properties:
+        name = prop.identifier
+        if name in _NOT_COPIED or name not in target.bl_rna.properties or (prop.is_runtime and not of_add_ons):
+            continue
+        if prop.type == "POINTER" and (prop.is_runtime or name in {"display", "field"}):
+            inside = getattr(source, name), getattr(target, name)
+            if None not in inside:
+                copy_settings(*inside, of_add_ons)
+        elif not prop.is_readonly and prop.type != "COLLECTION":
+            value = getattr(source, name)
+            if value != getattr(target, name):
+                setattr(target, name, value)
+
+
+def copy_custom_properties(source: bpy.types.ID, target: bpy.types.ID) -> None:
+    """Custom properties, with their limits and tooltips; not what add-ons keep there."""
+    for name, value in source.items():
+        if name in source.bl_rna.properties:
+            continue
+        target[name] = value
+        if isinstance(value, (int, float, str)):
+            target.id_properties_ui(name).update_from(source.id_properties_ui(name))
+
+
+def _copy_animation(source: bpy.types.Object, target: bpy.types.Object) -> None:
+    """Action, drivers and NLA strips."""
+    if source.animation_data is None:
+        return
+    old, new = source.animation_data, target.animation_data_create()
+    copy_settings(old, new)
+    for driver in old.drivers:
+        new.drivers.from_existing(src_driver=driver)
+    for track in old.nla_tracks:
+        made = new.nla_tracks.new()
+        made.name = track.name
+        for strip in track.strips:
+            if strip.action is not None:
+                copy_settings(strip, made.strips.new(strip.name, int(strip.frame_start), strip.action))
+        copy_settings(track, made)

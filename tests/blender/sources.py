@@ -1,0 +1,89 @@
+"""Objects of the kinds that `drawing.py` has not, linked into the scene and selected; and their meshing without the operator."""
+
+import bpy
+import numpy as np
+
+from addon import tessera
+from addon.blender.reading import read_outlines
+from addon.blender.writing import Piece
+from tests.blender.drawing import _link
+
+
+def hair_curves(*loops, name="Curves", kind="POLY", cyclic=True):
+    """A Curves object; loops: (k, 3) each."""
+    data = bpy.data.hair_curves.new(name)
+    data.add_curves([len(loop) for loop in loops])
+    data.position_data.foreach_set("vector", np.concatenate(loops).astype(np.float32).ravel())
+    _set(data.attributes, "curve_type", "INT8", [("CATMULL_ROM", "POLY", "BEZIER", "NURBS").index(kind)] * len(loops))
+    _set(data.attributes, "cyclic", "BOOLEAN", [cyclic] * len(loops))
+    return _link(bpy.data.objects.new(name, data))
+
+
+def grease_pencil(*loops, name="Strokes", cyclic=True, **layer_settings):
+    """A Grease Pencil object with one layer and one frame; loops: (k, 3) each."""
+    collection = getattr(bpy.data, "grease_pencils_v3", None) or bpy.data.grease_pencils
+    data = collection.new(name)
+    layer = data.layers.new("Layer")
+    drawing = layer.frames.new(1).drawing
+    drawing.add_strokes([len(loop) for loop in loops])
+    drawing.attributes["position"].data.foreach_set("vector", np.concatenate(loops).astype(np.float32).ravel())
+    _set(drawing.attributes, "cyclic", "BOOLEAN", [cyclic] * len(loops))
+    for setting, value in layer_settings.items():
+        setattr(layer, setting, value)
+    return _link(bpy.data.objects.new(name, data))
+
+
+def mesh_object(points, edges, faces, name="Flat"):
+    """A mesh object, as Mesh.from_pydata takes it."""
+    data = bpy.data.meshes.new(name)
+    data.from_pydata([tuple(point) for point in points], edges, faces)
+    data.update()
+    return _link(bpy.data.objects.new(name, data))
+
+
+def collection_of(*objects, name="Shown"):
+    """A collection that is in no scene, of these objects only."""
+    collection = bpy.data.collections.new(name)
+    for obj in objects:
+        for other in obj.users_collection:
+            other.objects.unlink(obj)
+        collection.objects.link(obj)
+    return collection
+
+
+def instance_of(collection, name="Instance"):
+    """An empty that shows a collection."""
+    empty = bpy.data.objects.new(name, None)
+    empty.instance_type, empty.instance_collection = "COLLECTION", collection
+    return _link(empty)
+
+
+def node_group(build):
+    """Geometry nodes from the object's geometry to what `build(tree, input socket)` gives as output socket."""
+    tree = bpy.data.node_groups.new("Nodes", "GeometryNodeTree")
+    for direction in ("INPUT", "OUTPUT"):
+        tree.interface.new_socket("Geometry", in_out=direction, socket_type="NodeSocketGeometry")
+    start, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+    tree.links.new(build(tree, start.outputs[0]), end.inputs[0])
+    return tree
+
+
+def read(obj):
+    """Its outlines."""
+    bpy.context.view_layer.update()
+    return read_outlines(obj, bpy.context.evaluated_depsgraph_get())
+
+
+def meshed(outlines, edge_length=None, boundary="resample"):
+    """The piece of each outline; edge_length: a twelfth of each outline's size where it is not given."""
+    pieces = []
+    for outline in outlines:
+        way = boundary if outline.part is None else "keep"
+        made = tessera.mesh(outline.loops, edge_length or outline.size / 12, boundary=way)
+        pieces.append(Piece(outline, made.vertices, made.triangles, made.region))
+    return pieces
+
+
+def _set(attributes, name, kind, values):
+    attribute = attributes.get(name) or attributes.new(name, kind, "CURVE")
+    attribute.data.foreach_set("value", np.array(values, dtype=bool if kind == "BOOLEAN" else np.int32))
