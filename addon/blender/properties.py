@@ -1,7 +1,7 @@
 """The settings as Blender's properties: for operators, linked meshes and preferences, from the one table."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from dataclasses import fields
 
 import bpy
@@ -12,20 +12,28 @@ from .settings import Settings, Shown, table
 _DIGITS = 4
 
 
-def annotations(*, pointers: bool = False, update: Callable | None = None) -> dict:
+def annotations(
+    *, pointers: bool = False, update: Callable | None = None, without: Container[str] = ()
+) -> dict[str, object]:
     """A property for each setting, to become the annotations of a class that is registered with Blender.
 
     pointers: objects are referred to by pointer, which follows a renaming, and which operators cannot hold. update: is
-    called with the group and the context after each change.
+    called with the group and the context after each change. without: groups of settings that are left out.
     """
     shown = table()
-    return {each.name: _property(each.default, shown[each.name], pointers, update) for each in fields(Settings)}
+    return {
+        each.name: _property(each.default, shown[each.name], pointers, update)
+        for each in fields(Settings)
+        if shown[each.name].group not in without
+    }
 
 
 def read_settings(owner: bpy.types.bpy_struct) -> Settings:
-    """The settings that an operator or a property group holds."""
+    """The settings that an operator or a property group holds; those that it lacks have their defaults."""
     values = {}
     for name, shown in table().items():
+        if name not in owner.bl_rna.properties:
+            continue
         value = getattr(owner, name)
         if _is_pointer(owner, name):
             value = value.name if value else ""
@@ -34,12 +42,17 @@ def read_settings(owner: bpy.types.bpy_struct) -> Settings:
 
 
 def write_settings(settings: Settings, owner: bpy.types.bpy_struct) -> None:
-    """Set the properties of an operator or a property group."""
-    for name, shown in table().items():
-        value = getattr(settings, name)
-        if shown.unit == "angle":
-            value = math.radians(value)
-        setattr(owner, name, bpy.data.objects.get(value) if _is_pointer(owner, name) else value)
+    """Set all properties of a property group."""
+    for name in table():
+        write_setting(settings, name, owner)
+
+
+def write_setting(settings: Settings, name: str, owner: bpy.types.bpy_struct) -> None:
+    """Set one property of an operator or a property group."""
+    value = getattr(settings, name)
+    if table()[name].unit == "angle":
+        value = math.radians(value)
+    setattr(owner, name, bpy.data.objects.get(value) if _is_pointer(owner, name) else value)
 
 
 def _is_pointer(owner: bpy.types.bpy_struct, name: str) -> bool:
@@ -72,3 +85,30 @@ def _property(default: bool | int | float | str, shown: Shown, pointers: bool, u
         return bpy.props.FloatProperty(default=math.radians(default), subtype="ANGLE", **bounds, **common)
     kind = {"subtype": "DISTANCE", "precision": _DIGITS} if shown.unit == "length" else {"precision": 2}
     return bpy.props.FloatProperty(default=default, **kind, **bounds, **common)
+
+
+class TESSERA_PG_settings(bpy.types.PropertyGroup):
+    """All settings, as a linked mesh holds them."""
+
+    __annotations__ = annotations(pointers=True)
+
+
+class TESSERA_PG_defaults(bpy.types.PropertyGroup):
+    """All settings, as the preferences hold them, which cannot refer to objects."""
+
+    __annotations__ = annotations()
+
+
+_CLASSES = (TESSERA_PG_settings, TESSERA_PG_defaults)
+
+
+def register() -> None:
+    """Register the groups of settings."""
+    for cls in _CLASSES:
+        bpy.utils.register_class(cls)
+
+
+def unregister() -> None:
+    """Take them back."""
+    for cls in reversed(_CLASSES):
+        bpy.utils.unregister_class(cls)
