@@ -28,6 +28,8 @@ def read_outlines(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> list
     """
     if obj.type == "MESH" and obj.mode == "EDIT":
         return read_parts(obj)
+    if obj.type == "CURVE" and obj.mode == "EDIT":
+        _bring_edits(obj, depsgraph)
     evaluated = obj.evaluated_get(depsgraph)
     world = np.array(evaluated.matrix_world, dtype=np.float64)
     if not np.isfinite(world).all():
@@ -52,6 +54,13 @@ def read_outline(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Outli
 def slots(obj: bpy.types.Object) -> tuple[bpy.types.Material | None, ...]:
     """The materials of an object's slots."""
     return tuple(slot.material for slot in obj.material_slots)
+
+
+def _bring_edits(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
+    """Have what is being edited evaluated: Blender itself does so only when Edit Mode ends."""
+    obj.update_from_editmode()
+    obj.data.update_tag()
+    depsgraph.update()
 
 
 def _own(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> list[Polyline]:

@@ -14,15 +14,26 @@ def hair_curves(*loops, name="Curves", kind="POLY", cyclic=True):
     data = bpy.data.hair_curves.new(name)
     data.add_curves([len(loop) for loop in loops])
     data.position_data.foreach_set("vector", np.concatenate(loops).astype(np.float32).ravel())
-    _set(data.attributes, "curve_type", "INT8", [("CATMULL_ROM", "POLY", "BEZIER", "NURBS").index(kind)] * len(loops))
     _set(data.attributes, "cyclic", "BOOLEAN", [cyclic] * len(loops))
-    return _link(bpy.data.objects.new(name, data))
+    obj = bpy.data.objects.new(name, data)
+    if hasattr(data, "set_types"):
+        data.set_types(type=kind)
+    elif kind != "CATMULL_ROM":  # before Blender 4.5, only nodes can
+
+        def change_type(tree, geometry):
+            node = tree.nodes.new("GeometryNodeCurveSplineType")
+            node.spline_type = kind
+            tree.links.new(geometry, node.inputs["Curve"])
+            return node.outputs[0]
+
+        obj.modifiers.new("Type", "NODES").node_group = node_group(change_type)
+    return _link(obj)
 
 
 def grease_pencil(*loops, name="Strokes", cyclic=True, **layer_settings):
     """A Grease Pencil object with one layer and one frame; loops: (k, 3) each."""
-    collection = getattr(bpy.data, "grease_pencils_v3", None) or bpy.data.grease_pencils
-    data = collection.new(name)
+    kept_in = "grease_pencils_v3" if hasattr(bpy.data, "grease_pencils_v3") else "grease_pencils"
+    data = getattr(bpy.data, kept_in).new(name)
     layer = data.layers.new("Layer")
     drawing = layer.frames.new(1).drawing
     drawing.add_strokes([len(loop) for loop in loops])
@@ -70,6 +81,8 @@ def node_group(build):
 
 def read(obj):
     """Its outlines."""
+    if obj.data is not None:
+        obj.data.update_tag()  # attributes are set without Blender's notice
     bpy.context.view_layer.update()
     return read_outlines(obj, bpy.context.evaluated_depsgraph_get())
 
@@ -80,8 +93,25 @@ def meshed(outlines, edge_length=None, boundary="resample"):
     for outline in outlines:
         way = boundary if outline.part is None else "keep"
         made = tessera.mesh(outline.loops, edge_length or outline.size / 12, boundary=way)
-        pieces.append(Piece(outline, made.vertices, made.triangles, made.region))
+        pieces.append(Piece(outline, made.vertices, made.triangles, region(outline.loops, made)))
     return pieces
+
+
+def region(loops, made):
+    """The outer contour around each triangle: the smallest loop that its centre is in, by crossings of a ray."""
+    centre = made.vertices[made.triangles].mean(axis=1)
+    around = np.array([_inside(centre, loop) for loop in loops])
+    size = np.array([np.prod(np.ptp(loop, axis=0)) for loop in loops])
+    assert around.any(axis=0).all()
+    return np.argmin(np.where(around, size[:, None], np.inf), axis=0)
+
+
+def _inside(points, loop):
+    start, end = loop, np.roll(loop, -1, axis=0)
+    spans = (start[:, 1] > points[:, None, 1]) != (end[:, 1] > points[:, None, 1])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        at = start[:, 0] + (points[:, None, 1] - start[:, 1]) / (end[:, 1] - start[:, 1]) * (end[:, 0] - start[:, 0])
+    return (spans & (points[:, None, 0] < at)).sum(axis=1) % 2 == 1
 
 
 def _set(attributes, name, kind, values):
