@@ -6,7 +6,7 @@ import bpy
 _NOT_COPIED = frozenset(
     {
         "rna_type", "name", "data", "type", "tag", "use_fake_user", "library", "asset_data", "override_library",
-        "matrix_world", "matrix_local", "matrix_basis", "parent", "parent_type", "parent_bone", "parent_vertices",
+        "matrix_world", "matrix_local", "matrix_basis", "parent", "parent_type", "parent_bone", "parent_vertices", "dimensions",
         "active_material", "active_material_index", "active_shape_key_index", "show_only_shape_key", "mode",
         "use_simulation_cache", "instance_type", "instance_collection",
     }

@@ -51,9 +51,11 @@ def write_in_place(source: bpy.types.Object, pieces: Sequence[Piece]) -> bpy.typ
     """
     geometry, old = join(pieces), source.data
     if source.type == "MESH":
-        _fill(source, geometry, _new_data(old.name, old))
+        _fill(source, geometry, _new_data(source.name, old))
         source.modifiers.clear()
+        name = old.name
         _drop(old)
+        source.data.name = name
         return source
     name, data_name = source.name, source.name if old is None else old.name
     source.name = f"{name} (replaced)"
