@@ -79,5 +79,7 @@ def _copy_animation(source: bpy.types.Object, target: bpy.types.Object) -> None:
         made.name = track.name
         for strip in track.strips:
             if strip.action is not None:
-                copy_settings(strip, made.strips.new(strip.name, int(strip.frame_start), strip.action))
+                other = made.strips.new(strip.name, int(strip.frame_start), strip.action)
+                other.name = strip.name  # before Blender 4.4, the action's
+                copy_settings(strip, other)
         copy_settings(track, made)

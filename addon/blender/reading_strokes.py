@@ -19,7 +19,7 @@ def read_curves(evaluated: bpy.types.Object) -> list[Polyline]:
 
 
 def read_grease_pencil(evaluated: bpy.types.Object, world: np.ndarray) -> list[Polyline]:
-    """One polyline a stroke that is shown at the current frame; one whose material is filled counts as closed.
+    """One polyline a stroke that is shown at the current frame; one that is filled counts as closed.
 
     world: (4, 4), the object's world matrix, as layers may have a parent of their own.
     """
@@ -46,14 +46,19 @@ def read_old_grease_pencil(evaluated: bpy.types.Object) -> list[Polyline]:
 
 
 def _numbered(evaluated: bpy.types.Object, drawn: list[Polyline]) -> list[Polyline]:
-    filled = [
-        slot.material is not None and slot.material.grease_pencil is not None and slot.material.grease_pencil.show_fill
-        for slot in evaluated.material_slots
-    ]
+    filled = [_is_filled(slot.material) for slot in evaluated.material_slots]
     return [
         Polyline(p.points, p.closed or (p.material < len(filled) and filled[p.material]), number, p.material)
         for number, p in enumerate(drawn, start=1)
     ]
+
+
+def _is_filled(material: bpy.types.Material | None) -> bool:
+    """Whether a material fills strokes; since Blender 5.2, strokes have fills of their own instead (`fill_id`)."""
+    if material is None or material.grease_pencil is None:
+        return False
+    setting = material.grease_pencil.bl_rna.properties["show_fill"]
+    return not getattr(setting, "is_deprecated", False) and material.grease_pencil.show_fill
 
 
 def _layer_matrix(layer: bpy.types.bpy_struct, world: np.ndarray) -> np.ndarray:
@@ -92,10 +97,11 @@ def _read(attributes, offsets, default_type: int = _CATMULL_ROM) -> list[Polylin
         of_curves("nurbs_order", 4),
         of_curves("knots_mode", 0),
         of_curves("material_index", 0),
+        of_curves("fill_id", 0),
         strict=True,
     )
     drawn = []
-    for number, (start, end, kind, cyclic, resolution, order, knots, material) in enumerate(columns, start=1):
+    for number, (start, end, kind, cyclic, resolution, order, knots, material, fill) in enumerate(columns, start=1):
         here, points = slice(start, end), position[start:end]
         if kind == _CATMULL_ROM:
             points = splines.catmull_rom(points, bool(cyclic), int(resolution))
@@ -108,7 +114,7 @@ def _read(attributes, offsets, default_type: int = _CATMULL_ROM) -> list[Polylin
             weights = of_points("nurbs_weight", 1.0)[here]
             modes = bool(knots & 1), bool(knots & 2)
             points = splines.nurbs(points, weights, int(order), bool(cyclic), *modes, int(resolution))
-        drawn.append(Polyline(points, bool(cyclic), number, int(material)))
+        drawn.append(Polyline(points, bool(cyclic or fill), number, int(material)))
     return drawn
 
 

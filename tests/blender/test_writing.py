@@ -198,7 +198,8 @@ def test_in_place_nothing_is_lost():
     curve.driver_add("pass_index").driver.expression = "4"
     track = curve.animation_data.nla_tracks.new()
     track.name = "Take"
-    track.strips.new("Strip", 10, bpy.data.actions.new("Other")).blend_type = "ADD"
+    strip = track.strips.new("Strip", 10, bpy.data.actions.new("Other"))
+    strip.name, strip.blend_type = "Strip", "ADD"
     curve.location, curve.rotation_euler, curve.scale = (1, 2, 3), (0.1, 0.2, 0.3), (-1, 2, 1)
     bpy.context.view_layer.update()
     matrix, action, modes = curve.matrix_world.copy(), curve.animation_data.action, curve.rotation_mode
