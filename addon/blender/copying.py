@@ -4,13 +4,13 @@ import bpy
 
 # What is the other object's own, what follows from the rest, and what is copied by a way of its own.
 _NOT_COPIED = frozenset(
-    {
-        "rna_type", "name", "data", "type", "tag", "use_fake_user", "library", "asset_data", "override_library",
-        "matrix_world", "matrix_local", "matrix_basis", "parent", "parent_type", "parent_bone", "parent_vertices", "dimensions",
-        "active_material", "active_material_index", "active_shape_key_index", "show_only_shape_key", "mode",
-        "use_simulation_cache", "instance_type", "instance_collection",
-    }
-)  # fmt: skip
+    """
+    rna_type name data type mode tag use_fake_user library asset_data override_library
+    matrix_world matrix_local matrix_basis dimensions parent parent_type parent_bone parent_vertices
+    active_material active_material_index active_shape_key_index show_only_shape_key use_simulation_cache
+    instance_type instance_collection
+    """.split()
+)
 
 
 def copy_object(source: bpy.types.Object, target: bpy.types.Object, everything: bool = False) -> None:

@@ -1,4 +1,4 @@
-"""Meshed outlines to one mesh in the source's space, with what each triangle brings. Arrays only: no `bpy` is called."""
+"""Meshed outlines to one mesh in the source's space, with what each triangle brings. No `bpy` is called here."""
 
 from __future__ import annotations
 
@@ -21,8 +21,11 @@ _GAP = 0.02
 
 @dataclass(frozen=True)
 class Piece:
-    """One meshed Outline: vertices (n, 2) float64 in its plane, triangles (m, 3) int32 and region (m,) int32, the index of
-    the outer contour around each triangle among the outline's loops; None where there is but one."""
+    """One meshed Outline.
+
+    vertices: (n, 2) float64 in its plane; triangles: (m, 3) int32; region: (m,) int32, the index of the outer contour
+    around each triangle among the outline's loops; None where there is but one.
+    """
 
     outline: Outline
     vertices: np.ndarray
@@ -52,7 +55,9 @@ def join(pieces: Sequence[Piece], placing: Sequence[np.ndarray | None] | None = 
     placing: for each piece a matrix (4, 4) into the mesh's space, or None where it is there.
     """
     placing = placing or [None] * len(pieces)
-    parts, triangles = zip(*(_placed(piece, matrix) for piece, matrix in zip(pieces, placing, strict=True)), strict=True)
+    parts, triangles = zip(
+        *(_placed(piece, matrix) for piece, matrix in zip(pieces, placing, strict=True)), strict=True
+    )
     first = np.cumsum([0] + [len(part) for part in parts])
     vertices = np.concatenate(parts)
     triangles = np.concatenate([part + start for part, start in zip(triangles, first, strict=False)])
@@ -64,7 +69,9 @@ def join(pieces: Sequence[Piece], placing: Sequence[np.ndarray | None] | None = 
         vertices = vertices[kept]
     outer = [np.zeros(len(p.triangles), dtype=np.int64) if p.region is None else p.region for p in pieces]
     slots, number = _common_slots([piece.outline.slots for piece in pieces])
-    materials = [of[np.minimum(p.outline.materials[o], len(of) - 1)] for p, o, of in zip(pieces, outer, number, strict=True)]
+    materials = [
+        of[np.minimum(p.outline.materials[o], len(of) - 1)] for p, o, of in zip(pieces, outer, number, strict=True)
+    ]
     return Geometry(
         vertices,
         triangles.astype(np.int32),
@@ -99,7 +106,9 @@ def _welded(vertices: np.ndarray, triangles: np.ndarray, owner: np.ndarray) -> n
     boundary = np.unique(border_edges(triangles))
     place = boundary[same_place(vertices[boundary], tolerance)]
     # A chain of close vertices could join two of one piece: then it stays as it is.
-    _, where, count = np.unique(np.column_stack([place, owner[boundary]]), axis=0, return_inverse=True, return_counts=True)
+    _, where, count = np.unique(
+        np.column_stack([place, owner[boundary]]), axis=0, return_inverse=True, return_counts=True
+    )
     crowded = np.isin(place, place[count[where.ravel()] > 1])
     label[boundary] = np.where(crowded, boundary, place)
     return label
@@ -129,7 +138,7 @@ def _side_by_side(pieces: Sequence[Piece], placing: Sequence[np.ndarray | None])
 def _common_slots(
     slots: Sequence[tuple[bpy.types.Material | None, ...]],
 ) -> tuple[tuple[bpy.types.Material | None, ...], list[np.ndarray]]:
-    """The first's slots, then what the others have more; for each, the common number of its own slots (at least one)."""
+    """The first's slots, then what others have more; for each, the numbers there of its own slots (one at least)."""
     common = list(slots[0])
     numbers = []
     for own in slots:

@@ -93,8 +93,8 @@ def make_outline(
 ) -> Outline:
     """Closed polylines of one plane.
 
-    to_world: (3, 3), the linear part of the object's world matrix; up: the side of the plane that the mesh faces. Raises
-    OutlineError: "open", "too-few-points", "not-planar", "zero-area", "not-finite".
+    to_world: (3, 3), the linear part of the object's world matrix; up: the side of the plane that the mesh faces.
+    Raises OutlineError: "open", "too-few-points", "not-planar", "zero-area", "not-finite".
     """
     if not polylines:
         raise OutlineError("too-few-points", NOTHING)

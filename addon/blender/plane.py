@@ -43,9 +43,9 @@ def inverse(matrix: np.ndarray) -> np.ndarray:
 def fit_plane(points: np.ndarray, to_world: np.ndarray, up: Sequence[float] = (0.0, 0.0, 1.0)) -> Plane:
     """The plane of a curve's points, seen from its upper side.
 
-    points: (n, 3) float64 in the object's space; to_world: (3, 3), the linear part of the object's world matrix; up: the
-    direction that the upper side faces. Raises OutlineError: "not-finite", "not-planar", "zero-area" (all points on a
-    line, or a scale of zero).
+    points: (n, 3) float64 in the object's space; to_world: (3, 3), the linear part of the object's world matrix; up:
+    the direction that the upper side faces. Raises OutlineError: "not-finite", "not-planar", "zero-area" (all points
+    on a line, or a scale of zero).
     """
     if not np.isfinite(points).all():
         bad = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
@@ -88,7 +88,7 @@ def _principal_axes(points: np.ndarray, origin: np.ndarray, extent: float, up: n
 
 
 def _across(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Two directions of the plane: the object's X as it lies in it, or Y where X stands on it, and the one to its left."""
+    """The object's X as it lies in the plane, or Y where X stands on it, and the direction to the left of that."""
     first = np.eye(3)[0 if abs(normal[0]) < 0.9 else 1]
     first = first - (first @ normal) * normal
     first /= np.linalg.norm(first)

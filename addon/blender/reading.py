@@ -94,7 +94,10 @@ def _instances(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph, worl
 
 
 def _placed(
-    polylines: Sequence[Polyline], matrix: np.ndarray, world: np.ndarray, materials: tuple[bpy.types.Material | None, ...]
+    polylines: Sequence[Polyline],
+    matrix: np.ndarray,
+    world: np.ndarray,
+    materials: tuple[bpy.types.Material | None, ...],
 ) -> list[Outline]:
     """Polylines of another object's space, brought here by a matrix (4, 4) that keeps the side that they face."""
     if not polylines:

@@ -40,7 +40,7 @@ def borders(mesh: bpy.types.Mesh) -> list[Polyline]:
 
 
 def _at_vertices(mesh: bpy.types.Mesh, face_vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """At every vertex, the first material among its faces and whether all of them are smooth; 0 and True without any."""
+    """At every vertex, the first material among its faces, and whether all are smooth; 0 and True without a face."""
     of_face, is_smooth, size = (np.empty(len(mesh.polygons), dtype=t) for t in (np.int32, bool, np.int32))
     mesh.polygons.foreach_get("material_index", of_face)
     mesh.polygons.foreach_get("use_smooth", is_smooth)

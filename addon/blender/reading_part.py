@@ -63,7 +63,10 @@ def _is_inside(edge: bmesh.types.BMEdge) -> bool:
     """Whether an edge between two selected faces may go."""
     one, other = edge.link_faces
     return (
-        not edge.seam and edge.smooth and one.material_index == other.material_index and edge.calc_face_angle(4.0) < _FLAT
+        not edge.seam
+        and edge.smooth
+        and one.material_index == other.material_index
+        and edge.calc_face_angle(4.0) < _FLAT
     )
 
 

@@ -1,4 +1,4 @@
-"""Curves (hair) and Grease Pencil objects to polylines: both keep their points in attributes, one run of them a curve."""
+"""Curves (hair) and Grease Pencil objects to polylines: both keep their points in attributes, a run of them a curve."""
 
 import bpy
 import numpy as np

@@ -28,7 +28,7 @@ def bezier(
 
 
 def catmull_rom(points: np.ndarray, cyclic: bool, resolution: int) -> np.ndarray:
-    """Uniform Catmull-Rom segments through points (n, 3): Bézier with a sixth of the neighbours' difference as handle."""
+    """Uniform Catmull-Rom segments through points (n, 3), as Bézier: handles a sixth from neighbour to neighbour."""
     before, after = np.roll(points, 1, axis=0), np.roll(points, -1, axis=0)
     if not cyclic:
         before[0], after[-1] = points[0], points[-1]
@@ -38,7 +38,13 @@ def catmull_rom(points: np.ndarray, cyclic: bool, resolution: int) -> np.ndarray
 
 
 def nurbs(
-    points: np.ndarray, weights: np.ndarray, order: int, cyclic: bool, endpoint: bool, bezier_knots: bool, resolution: int
+    points: np.ndarray,
+    weights: np.ndarray,
+    order: int,
+    cyclic: bool,
+    endpoint: bool,
+    bezier_knots: bool,
+    resolution: int,
 ) -> np.ndarray:
     """A rational B-spline with Blender's knots, at `resolution` even parameters between each knot and the next.
 
@@ -46,7 +52,7 @@ def nurbs(
     points for its order gives these. Returns (k, 3). (Blender before 5.0 spaces the parameters over all knots instead.)
     """
     n, degree = len(points), order - 1
-    if n < order or (bezier_knots and (n <= order and not endpoint or cyclic and n % degree)):
+    if n < order or (bezier_knots and ((n <= order and not endpoint) or (cyclic and n % degree))):
         return points
     knots = _knots(n, order, cyclic, endpoint, bezier_knots)
     wrapped = np.arange(n + degree if cyclic else n)

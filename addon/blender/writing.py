@@ -1,4 +1,4 @@
-"""Mesh objects from meshed outlines: beside their source, in its place, of several sources, or once more into the same."""
+"""Mesh objects from meshed outlines: beside their source, in its place, of several sources, or into the same again."""
 
 from collections.abc import Sequence
 
@@ -29,7 +29,7 @@ def write_mesh(source: bpy.types.Object, pieces: Sequence[Piece]) -> bpy.types.O
 
 
 def write_joined(parts: Sequence[tuple[bpy.types.Object, Sequence[Piece]]]) -> bpy.types.Object:
-    """One new mesh object of several sources, beside the first and with all that it has; the sources stay as they are."""
+    """One new mesh object of several sources, beside the first and with all that this has; the sources stay."""
     first = parts[0][0]
     to_first = inverse(np.array(first.matrix_world, dtype=np.float64))
     pieces, placing = [], []

@@ -17,9 +17,9 @@ _Faces = list[bmesh.types.BMFace]
 def write_part(obj: bpy.types.Object, pieces: Sequence[Piece]) -> None:
     """Replace the faces of every piece's part by its triangles, which are selected then.
 
-    The part's boundary vertices are the mesh's own, and where a boundary edge is divided, so is the face beyond it. A new
-    face has the material and shading of the old one in its place, and its corners and vertices have the UVs, colours,
-    weights and shape keys that there were.
+    The part's boundary vertices are the mesh's own, and where a boundary edge is divided, so is the face beyond it. A
+    new face has the material and shading of the old one in its place, and its corners and vertices have the UVs,
+    colours, weights and shape keys that there were.
     """
     bm = bmesh.from_edit_mesh(obj.data)
     bm.verts.ensure_lookup_table()

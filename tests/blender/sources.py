@@ -1,4 +1,4 @@
-"""Objects of the kinds that `drawing.py` has not, linked into the scene and selected; and their meshing without the operator."""
+"""Objects of the kinds that `drawing.py` has not, linked into the scene and selected; meshing without the operator."""
 
 import bpy
 import numpy as np

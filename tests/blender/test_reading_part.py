@@ -102,7 +102,9 @@ def test_the_middle_of_a_grid_is_replaced_and_the_rest_stays():
     assert faces_of_area(data) == pytest.approx(16)
     old = [polygon for polygon in data.polygons if polygon.loop_total >= 4]
     assert len(old) == 12
-    lengths = np.array([(data.vertices[a].co - data.vertices[b].co).length for a, b in (edge.vertices for edge in data.edges)])
+    lengths = np.array(
+        [(data.vertices[a].co - data.vertices[b].co).length for a, b in (edge.vertices for edge in data.edges)]
+    )
     assert 0.2 < lengths[edge_uses(data) == 2].min()
 
 
@@ -188,9 +190,7 @@ def test_a_closed_edge_loop_is_filled_facing_as_its_neighbours():
 def test_edge_loops_without_any_face_have_holes_in_each_other():
     outer, inner = np.array(SQUARE) * 4, star() * 0.8 + 2
     points = np.column_stack([np.concatenate([outer, inner]), np.zeros(4 + len(inner))])
-    edges = [(i, (i + 1) % 4) for i in range(4)] + [
-        (4 + i, 4 + (i + 1) % len(inner)) for i in range(len(inner))
-    ]
+    edges = [(i, (i + 1) % 4) for i in range(4)] + [(4 + i, 4 + (i + 1) % len(inner)) for i in range(len(inner))]
     obj = mesh_object(points, edges, [])
     edit(obj, edges=range(len(edges)))
     data = remesh(obj, 0.3)
