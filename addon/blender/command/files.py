@@ -37,7 +37,7 @@ def jobs_of(inputs: list[str], output: str, format: str | None) -> list[Job]:
         return [Job(source, _checked_file(target, format))]
     sources = sorted({path for each in inputs for path in _expand(each)})
     _check_sources(sources)
-    if (target.exists() and not target.is_dir()) or not target.parent.is_dir():
+    if (os.path.exists(target) and not os.path.isdir(target)) or not os.path.isdir(target.parent):
         raise ValueError(f"'{target}' cannot be written: for several inputs, give a folder, in a folder that exists")
     jobs = [Job(source, target / f"{source.stem}.{format or 'blend'}") for source in sources]
     _check_targets(jobs)
@@ -49,7 +49,7 @@ def _absolute(path: str) -> Path:
 
 
 def _checked_file(target: Path, format: str | None) -> Path:
-    if target.is_dir() or not target.parent.is_dir():
+    if os.path.isdir(target) or not os.path.isdir(target.parent):  # which take any length of name
         raise ValueError(f"'{target}' cannot be written: give a file in a folder that exists")
     ending = target.suffix.lower().removeprefix(".")
     if ending not in FORMATS or format not in (None, ending):

@@ -45,7 +45,6 @@ class Journal:
     def add(self, key: str, record: dict, arrays: list[np.ndarray]) -> Entry:
         """A curve is done. The arrays may be of any shape and dtype."""
         if self._lines is None:
-            self.folder.mkdir(parents=True, exist_ok=True)
             stem = self.folder / f"{self._run}-{os.getpid()}"
             self._arrays = open(f"{stem}.bin", "ab")
             self._lines = open(f"{stem}.jsonl", "a", encoding="utf-8")
@@ -86,9 +85,7 @@ def load(entry: Entry) -> list[np.ndarray]:
 
 def write_done(target: Path, key: str, run: str, records: list[dict]) -> None:
     """The file is written, or cannot be: what became of it, for a later run with the same key or for the same run."""
-    folder = folder_of(target)
-    folder.mkdir(parents=True, exist_ok=True)
-    write_atomically(folder / "done.json", json.dumps({"key": key, "run": run, "records": records}))
+    write_atomically(folder_of(target) / "done.json", json.dumps({"key": key, "run": run, "records": records}))
 
 
 def read_done(target: Path, key: str, run: str) -> list[dict] | None:

@@ -35,7 +35,9 @@ def run(arguments: list[str]) -> int:
         return _plan(request) if request.dry_run else _lead(request, arguments)
     except tessera.RuntimeProblem as problem:
         console.say(str(problem))
-        return 1
+    except OSError as error:  # of the journal: the disk is full, or the folder cannot be written to
+        console.say(f"stopped, as '{error.filename}' cannot be written: {error.strerror}")
+    return 1
 
 
 def _check(request: Request) -> None:
@@ -91,6 +93,8 @@ def _prepare(request: Request) -> Claims:
     if not request.resume:
         for job in request.jobs:
             forget(job.target)
+    for job in request.jobs:
+        folder_of(job.target).mkdir(parents=True, exist_ok=True)
     if request.workers == 1:
         return Claims(run)
     claims = Claims(f"run-{run}", first / f"run-{run}")
@@ -111,7 +115,8 @@ def _records(request: Request, claims: Claims) -> Iterator[Record]:
         else:
             records = mesh_file(job, request, claims, number)
         yield from records
-        progress.reached(number + 1)
+        if len(request.jobs) > 1:
+            progress.reached(number + 1)
 
 
 def _reported(request: Request, records: list[Record], seconds: float) -> int:
