@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -52,22 +51,3 @@ def _sentence(obj: bpy.types.Object, error: ContourError, spline: int, place: tu
     if place and error.reason in _SENTENCES:
         return f"{name} {_SENTENCES[error.reason].format(place=where)}"
     return f"{name}: {error}" + (f" That is at {where}." if place else "")
-
-
-@dataclass(frozen=True)
-class Noted:
-    """A failure that the sidebar shows until the object is meshed: what the object is called, and what is wrong."""
-
-    obj: str
-    sentence: str
-    spline: int
-    place: tuple[float, float, float] | None
-
-
-# Of the last use in this session; no part of the file, so that a failure leaves that as it was.
-last: list[Noted] = []
-
-
-def note(failures: list[Failure]) -> None:
-    """Keep these failures in place of those of the last use."""
-    last[:] = [Noted(failure.obj, str(failure), failure.spline, failure.place) for failure in failures]

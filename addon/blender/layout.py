@@ -9,7 +9,7 @@ from itertools import groupby
 
 import bpy
 
-from . import failures
+from . import notes
 from .settings import EDGES_ALONG, Settings, table
 
 _TITLES = {"sizing": "Smaller Triangles", "boundary": "Boundary", "finish": "Finish", "result": "Result"}
@@ -58,11 +58,11 @@ def draw_text(layout: bpy.types.UILayout, text: str, width: int) -> None:
 
 def draw_failures(layout: bpy.types.UILayout, most: int, width: int) -> None:
     """Each failure of the last use, with a button that leads to its place."""
-    for noted in failures.last[:most]:
+    for noted in notes.last[:most]:
         column = layout.column(align=True)
         draw_text(column, noted.sentence, width)
         if noted.place is not None:
             button = column.operator("tessera.select_place", icon="RESTRICT_SELECT_OFF")
             button.object_name, button.spline, button.place = noted.obj, noted.spline, noted.place
-    if len(failures.last) > most:
-        layout.label(text=f"… and {len(failures.last) - most} more: see the Info editor")
+    if len(notes.last) > most:
+        layout.label(text=f"… and {len(notes.last) - most} more: see the Info editor")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bpy
 
-from . import failures, overlay
+from . import notes, overlay
 from .layout import draw_failures, draw_settings, draw_text
 from .linked import BINS, is_linked, source_is_there
 
@@ -75,7 +75,7 @@ class TESSERA_PT_failures(bpy.types.Panel):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Something failed in the last use."""
-        return bool(failures.last)
+        return bool(notes.last)
 
     def draw(self, context: bpy.types.Context) -> None:
         """Each failure, with a button that leads to its place."""

@@ -32,7 +32,7 @@ def read_settings(owner: bpy.types.bpy_struct) -> Settings:
     """The settings that an operator or a property group holds; those that it lacks have their defaults."""
     values = {}
     for name, shown in table().items():
-        if name not in owner.bl_rna.properties:
+        if name not in _known(owner):
             continue
         value = getattr(owner, name)
         if _is_pointer(owner, name):
@@ -56,7 +56,12 @@ def write_setting(settings: Settings, name: str, owner: bpy.types.bpy_struct) ->
 
 
 def _is_pointer(owner: bpy.types.bpy_struct, name: str) -> bool:
-    return owner.bl_rna.properties[name].type == "POINTER"
+    return _known(owner)[name].type == "POINTER"
+
+
+def _known(owner: bpy.types.bpy_struct):
+    """What properties there are: an operator's are not its own, but those of its `properties`."""
+    return getattr(owner, "properties", owner).bl_rna.properties
 
 
 def _property(default: bool | int | float | str, shown: Shown, pointers: bool, update: Callable | None):

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from .. import failures
+from .. import notes
 from ..layout import draw_failures
 from ..progress import Done, Steps, advance, finish
 
@@ -96,7 +96,7 @@ class Stepping:
         context.workspace.status_text_set(f"{self.bl_label}: {percent} % ({progress.stage})    Esc: cancel")
 
     def _end(self, context: bpy.types.Context, batch: Batch, in_window: bool) -> set[str]:
-        failures.note(batch.failures)
+        notes.note(batch.failures)
         if in_window and batch.failures:
             _pop_up(context)
         if not batch.meshed:
