@@ -14,7 +14,6 @@ from bpy.app.handlers import persistent
 
 from .linked import fingerprint, is_linked, linked_settings, source_is_there
 from .progress import finish
-from .properties import read_settings
 
 # Meshes that took longer than this many seconds wait until their source has not changed for as long as _REST.
 _QUICK, _REST = 0.2, 0.4
@@ -62,10 +61,10 @@ def mesh_again(obj: bpy.types.Object) -> bool:
     if not source_is_there(obj):
         obj.tessera.message = "Its source is no longer in the scene"
         return False
-    depsgraph = bpy.context.evaluated_depsgraph_get()
+    settings, depsgraph = linked_settings(obj), bpy.context.evaluated_depsgraph_get()
     try:
-        task = meshing.read_task(obj.tessera.source, depsgraph, linked_settings(read_settings(obj.tessera.settings)))
-        if fingerprint(task) == obj.tessera.fingerprint:
+        task = meshing.read_task(obj.tessera.source, depsgraph, settings)
+        if fingerprint(task, settings) == obj.tessera.fingerprint:
             if obj.tessera.message:
                 obj.tessera.message = ""
             return False

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from .properties import TESSERA_PG_settings, write_settings
+from .properties import annotations, read_settings, write_settings
 
 if TYPE_CHECKING:
     from .meshing import Meshed, Task
@@ -26,13 +26,19 @@ def _changed(group, _context) -> None:
     following.want(group.id_data)
 
 
+class TESSERA_PG_link_settings(bpy.types.PropertyGroup):
+    """The settings of a linked mesh."""
+
+    __annotations__ = annotations(pointers=True, update=_changed, without=("result",))
+
+
 class TESSERA_PG_mesh(bpy.types.PropertyGroup):
     """At every object, and filled for those that Tessera has made: numbers of the last meshing, and the link."""
 
     source: bpy.props.PointerProperty(
         type=bpy.types.Object, name="Source", description="What this mesh is made of, while it is kept linked"
     )
-    settings: bpy.props.PointerProperty(type=TESSERA_PG_settings)
+    settings: bpy.props.PointerProperty(type=TESSERA_PG_link_settings)
     automatic: bpy.props.BoolProperty(
         name="Follow Changes",
         description="Mesh again at each change of the source. Switch it off for meshes that take long",
@@ -48,11 +54,21 @@ class TESSERA_PG_mesh(bpy.types.PropertyGroup):
     histogram: bpy.props.IntVectorProperty(name="Qualities", size=len(BINS) - 1)
 
 
-def remember(obj: bpy.types.Object, made: list[Meshed], linked: bool) -> None:
-    """Note at a mesh object how good it is and, if it is to be linked, what it was made of.
+def link(obj: bpy.types.Object, meshed: Meshed) -> None:
+    """Note at a new mesh object what it was made of; an edge length that was chosen is noted as it came out."""
+    note = obj.tessera
+    note.source = meshed.task.obj
+    write_settings(replace(meshed.task.settings, edge_length=meshed.edge_length), note.settings)
+    mark_as_current(obj, meshed)
 
-    made: what it was written of; more than one where they were joined.
-    """
+
+def mark_as_current(obj: bpy.types.Object, meshed: Meshed) -> None:
+    """Note that a linked mesh is what is made of this now."""
+    obj.tessera.fingerprint = fingerprint(meshed.task, linked_settings(obj))
+
+
+def remember_quality(obj: bpy.types.Object, made: list[Meshed]) -> None:
+    """Note at a mesh object how good it is; made: what it was written of, more than one where they were joined."""
     note, reports = obj.tessera, [report for meshed in made for report in meshed.reports]
     counts = np.array([report.n_triangles for report in reports])
     lengths = np.array([report.edge_lengths for report in reports])
@@ -64,11 +80,6 @@ def remember(obj: bpy.types.Object, made: list[Meshed], linked: bool) -> None:
     quality = np.concatenate([piece_quality(piece) for meshed in made for piece in meshed.pieces])
     note.histogram = np.histogram(np.clip(quality, BINS[0], BINS[-1]), BINS)[0].tolist()
     note.message = ""
-    if linked:
-        (meshed,) = made
-        note.source = meshed.task.obj
-        note.fingerprint = fingerprint(meshed.task)
-        write_settings(replace(meshed.task.settings, edge_length=meshed.edge_length), note.settings)
 
 
 def piece_quality(piece: Piece) -> np.ndarray:
@@ -78,8 +89,8 @@ def piece_quality(piece: Piece) -> np.ndarray:
     return element_quality(piece.vertices, piece.triangles)
 
 
-def fingerprint(task: Task) -> str:
-    """A word that is the same as long as what is read for a mesh is."""
+def fingerprint(task: Task, settings: Settings) -> str:
+    """A word that is the same as long as what is read for a mesh, and its settings, are."""
     digest = hashlib.sha1(usedforsecurity=False)
     for outline, targets in zip(task.outlines, task.targets, strict=True):
         arrays = [*outline.loops, outline.plane.origin, outline.plane.axes, outline.plane.metric, outline.materials]
@@ -88,12 +99,12 @@ def fingerprint(task: Task) -> str:
         for array in arrays:
             digest.update(str(array.shape).encode())
             digest.update(np.ascontiguousarray(array).tobytes())
-    return digest.hexdigest() + repr(linked_settings(task.settings))
+    return digest.hexdigest() + repr(settings)
 
 
-def linked_settings(settings: Settings) -> Settings:
-    """The settings of a linked mesh: what becomes of it is settled."""
-    return replace(settings, result="NEW", keep_linked=True)
+def linked_settings(obj: bpy.types.Object) -> Settings:
+    """The settings of a linked mesh."""
+    return read_settings(obj.tessera.settings)
 
 
 def is_linked(obj: bpy.types.Object | None) -> bool:
@@ -108,6 +119,7 @@ def source_is_there(obj: bpy.types.Object) -> bool:
 
 def register() -> None:
     """Give every object its note."""
+    bpy.utils.register_class(TESSERA_PG_link_settings)
     bpy.utils.register_class(TESSERA_PG_mesh)
     bpy.types.Object.tessera = bpy.props.PointerProperty(type=TESSERA_PG_mesh)
 
@@ -116,3 +128,4 @@ def unregister() -> None:
     """Take it back."""
     del bpy.types.Object.tessera
     bpy.utils.unregister_class(TESSERA_PG_mesh)
+    bpy.utils.unregister_class(TESSERA_PG_link_settings)

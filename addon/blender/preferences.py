@@ -3,7 +3,7 @@
 import bpy
 
 from .layout import draw_settings
-from .properties import TESSERA_PG_defaults, read_settings
+from .properties import annotations, read_settings
 from .settings import Settings
 
 # The extension's own name: this file is PACKAGE.addon.blender.preferences.
@@ -15,6 +15,12 @@ def _providers(_self, _context, text: str) -> list[str]:
     import onnxruntime
 
     return [name for name in onnxruntime.get_available_providers() if text.lower() in name.lower()]
+
+
+class TESSERA_PG_defaults(bpy.types.PropertyGroup):
+    """What the operator starts with."""
+
+    __annotations__ = annotations()
 
 
 class TESSERA_preferences(bpy.types.AddonPreferences):
@@ -85,9 +91,11 @@ def execution() -> tuple[int, str]:
 
 def register() -> None:
     """Make the preferences known."""
+    bpy.utils.register_class(TESSERA_PG_defaults)
     bpy.utils.register_class(TESSERA_preferences)
 
 
 def unregister() -> None:
     """Take them back."""
     bpy.utils.unregister_class(TESSERA_preferences)
+    bpy.utils.unregister_class(TESSERA_PG_defaults)

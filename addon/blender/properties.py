@@ -42,9 +42,10 @@ def read_settings(owner: bpy.types.bpy_struct) -> Settings:
 
 
 def write_settings(settings: Settings, owner: bpy.types.bpy_struct) -> None:
-    """Set all properties of a property group."""
+    """Set all properties of a property group that it has."""
     for name in table():
-        write_setting(settings, name, owner)
+        if name in _known(owner):
+            write_setting(settings, name, owner)
 
 
 def write_setting(settings: Settings, name: str, owner: bpy.types.bpy_struct) -> None:
@@ -90,30 +91,3 @@ def _property(default: bool | int | float | str, shown: Shown, pointers: bool, u
         return bpy.props.FloatProperty(default=math.radians(default), subtype="ANGLE", **bounds, **common)
     kind = {"subtype": "DISTANCE", "precision": _DIGITS} if shown.unit == "length" else {"precision": 2}
     return bpy.props.FloatProperty(default=default, **kind, **bounds, **common)
-
-
-class TESSERA_PG_settings(bpy.types.PropertyGroup):
-    """All settings, as a linked mesh holds them."""
-
-    __annotations__ = annotations(pointers=True)
-
-
-class TESSERA_PG_defaults(bpy.types.PropertyGroup):
-    """All settings, as the preferences hold them, which cannot refer to objects."""
-
-    __annotations__ = annotations()
-
-
-_CLASSES = (TESSERA_PG_settings, TESSERA_PG_defaults)
-
-
-def register() -> None:
-    """Register the groups of settings."""
-    for cls in _CLASSES:
-        bpy.utils.register_class(cls)
-
-
-def unregister() -> None:
-    """Take them back."""
-    for cls in reversed(_CLASSES):
-        bpy.utils.unregister_class(cls)

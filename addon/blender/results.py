@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from .linked import remember
+from .linked import link, mark_as_current, remember_quality
 from .preferences import collection_name
 from .writing import write_again, write_in_place, write_joined, write_mesh
 
@@ -19,13 +19,15 @@ def write_results(made: list[Meshed]) -> list[bpy.types.Object]:
     settings = made[0].task.settings
     if settings.result == "JOIN":
         objects = [write_joined([(meshed.task.obj, list(meshed.pieces)) for meshed in made])]
-        remember(objects[0], made, linked=False)
+        remember_quality(objects[0], made)
     else:
         write = write_in_place if settings.result == "REPLACE" else write_mesh
         objects = []
         for meshed in made:
             obj = write(meshed.task.obj, list(meshed.pieces))
-            remember(obj, [meshed], linked=settings.keep_linked and settings.result == "NEW")
+            remember_quality(obj, [meshed])
+            if settings.keep_linked and settings.result == "NEW":
+                link(obj, meshed)
             objects.append(obj)
     name = collection_name()
     if name and settings.result != "REPLACE":
@@ -36,7 +38,8 @@ def write_results(made: list[Meshed]) -> list[bpy.types.Object]:
 def rewrite(target: bpy.types.Object, meshed: Meshed) -> None:
     """Give a linked mesh its new geometry."""
     write_again(target, list(meshed.pieces))
-    remember(target, [meshed], linked=True)
+    remember_quality(target, [meshed])
+    mark_as_current(target, meshed)
 
 
 def select(

@@ -8,7 +8,6 @@ import bpy
 
 from ..linked import is_linked, linked_settings, source_is_there
 from ..progress import Steps
-from ..properties import read_settings
 from .stepping import Refusal, Stepping
 
 if TYPE_CHECKING:
@@ -36,7 +35,7 @@ class TESSERA_OT_mesh_again(Stepping, bpy.types.Operator):
             if not source_is_there(obj):
                 raise Refusal(f"Mesh '{obj.name}': its source is no longer in the scene. Undo its deletion, or unlink")
         sources = [obj.tessera.source for obj in self._targets]
-        settings = [linked_settings(read_settings(obj.tessera.settings)) for obj in self._targets]
+        settings = [linked_settings(obj) for obj in self._targets]
         return meshing.mesh_all(sources, context.evaluated_depsgraph_get(), settings)
 
     def write(self, context: bpy.types.Context, batch: Batch) -> None:
