@@ -86,7 +86,7 @@ def _lead(request: Request, words: list[str]) -> int:
 def _prepare(request: Request) -> Claims:
     """The folder to write to is made, and an earlier run's journals are removed, or its processes' claims alone."""
     request.jobs[0].target.parent.mkdir(exist_ok=True)
-    run = f"{int(time.time()):x}-{os.getpid():x}"
+    run = f"{time.time_ns():x}-{os.getpid():x}"
     first = folder_of(request.jobs[0].target)
     for old in first.glob("run-*"):
         shutil.rmtree(old, ignore_errors=True)
