@@ -35,13 +35,35 @@ def grease_pencil(*loops, name="Strokes", cyclic=True, **layer_settings):
     kept_in = "grease_pencils_v3" if hasattr(bpy.data, "grease_pencils_v3") else "grease_pencils"
     data = getattr(bpy.data, kept_in).new(name)
     layer = data.layers.new("Layer")
-    drawing = layer.frames.new(1).drawing
-    drawing.add_strokes([len(loop) for loop in loops])
-    drawing.attributes["position"].data.foreach_set("vector", np.concatenate(loops).astype(np.float32).ravel())
-    _set(drawing.attributes, "cyclic", "BOOLEAN", [cyclic] * len(loops))
+    (_draw_strokes if bpy.app.version >= (4, 3) else _draw_old_strokes)(layer.frames.new(1), loops, cyclic)
     for setting, value in layer_settings.items():
         setattr(layer, setting, value)
     return _link(bpy.data.objects.new(name, data))
+
+
+def set_cyclic(obj, number, cyclic):
+    """Open or close one curve of a Curves or Grease Pencil object."""
+    if obj.type == "GPENCIL":
+        obj.data.layers[0].frames[0].strokes[number].use_cyclic = cyclic
+    else:
+        holder = obj.data if obj.type == "CURVES" else obj.data.layers[0].frames[0].drawing
+        holder.attributes["cyclic"].data[number].value = cyclic
+
+
+def _draw_strokes(frame, loops, cyclic):
+    drawing = frame.drawing
+    drawing.add_strokes([len(loop) for loop in loops])
+    drawing.attributes["position"].data.foreach_set("vector", np.concatenate(loops).astype(np.float32).ravel())
+    _set(drawing.attributes, "cyclic", "BOOLEAN", [cyclic] * len(loops))
+
+
+def _draw_old_strokes(frame, loops, cyclic):
+    """In Blender 4.2."""
+    for loop in loops:
+        stroke = frame.strokes.new()
+        stroke.points.add(len(loop))
+        stroke.points.foreach_set("co", np.asarray(loop, dtype=np.float32).ravel())
+        stroke.use_cyclic = cyclic
 
 
 def mesh_object(points, edges, faces, name="Flat"):

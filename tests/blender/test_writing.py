@@ -64,8 +64,6 @@ DRAW = {
 @pytest.mark.parametrize("size", [1e-4, 1.0, 1e4])
 @pytest.mark.parametrize("kind", DRAW)
 def test_a_negative_scaled_rotated_parented_outlines_mesh_lies_on_it(kind, size):
-    if kind == "GREASEPENCIL" and bpy.app.version < (4, 3):
-        pytest.skip("Blender 4.2 has the old Grease Pencil only")
     obj = DRAW[kind]()
     parent = bpy.data.objects.new("Parent", None)
     bpy.context.scene.collection.objects.link(parent)
