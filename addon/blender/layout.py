@@ -12,7 +12,7 @@ import bpy
 from . import notes
 from .settings import EDGES_ALONG, Settings, table
 
-_TITLES = {"sizing": "Smaller Triangles", "boundary": "Boundary", "finish": "Finish", "result": "Result"}
+_TITLES = {"sizing": "Smaller"}
 
 
 def draw_settings(

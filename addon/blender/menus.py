@@ -6,8 +6,9 @@ from .kinds import is_readable
 from .operators.mesh_curve import TESSERA_OT_mesh_curve
 from .operators.remesh_faces import TESSERA_OT_remesh_faces
 
-# Blender's search looks at menu entries, so it draws some more, by words that users look for.
-_OTHER_WORDS = ("Triangulate Curve (Tessera)", "Remesh Curve (Tessera)")
+# Blender's search looks at the words of menu entries, so these have those that users look for.
+_MESH_CURVE = "Mesh Curve by Tessera (Triangulate, Remesh)"
+_REMESH_FACES = "Remesh Flat Faces by Tessera (Triangulate)"
 
 
 def _draw_convert(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
@@ -15,17 +16,14 @@ def _draw_convert(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
         _draw_curve(menu, context)
 
 
-def _draw_curve(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+def _draw_curve(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
     menu.layout.separator()
-    menu.layout.operator(TESSERA_OT_mesh_curve.bl_idname, icon="MESH_DATA")
-    if getattr(context, "is_menu_search", False):
-        for text in _OTHER_WORDS:
-            menu.layout.operator(TESSERA_OT_mesh_curve.bl_idname, text=text)
+    menu.layout.operator(TESSERA_OT_mesh_curve.bl_idname, text=_MESH_CURVE, icon="MESH_DATA")
 
 
 def _draw_faces(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
     menu.layout.separator()
-    menu.layout.operator(TESSERA_OT_remesh_faces.bl_idname, icon="MOD_TRIANGULATE")
+    menu.layout.operator(TESSERA_OT_remesh_faces.bl_idname, text=_REMESH_FACES, icon="MOD_TRIANGULATE")
 
 
 _MENUS = (
