@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 
 import addon_utils
@@ -29,13 +30,23 @@ def write_file(target: Path, made: list[bpy.types.Object]) -> None:
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
         _select(made)
-        _export(folder / target.name)
+        with _in_a_window():
+            _export(folder / target.name)
         # The file itself comes last, after what it refers to.
         for path in sorted(folder.iterdir(), key=lambda path: path.name == target.name):
             os.replace(path, target.with_name(path.name))
         folder.rmdir()
     except (RuntimeError, OSError) as error:
         raise OutputError(f"'{target}' was not written: {str(error).strip()}") from error
+
+
+def _in_a_window() -> AbstractContextManager:
+    """With a file that was named on Blender's command line there is no current window, and exporters ask for one."""
+    context = bpy.context
+    if context.window is not None:
+        return nullcontext()
+    window = context.window_manager.windows[0]
+    return context.temp_override(window=window, scene=context.scene, view_layer=context.view_layer)
 
 
 def _export(path: Path) -> None:
