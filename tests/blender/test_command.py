@@ -1,6 +1,8 @@
 """The command's own decisions, on the bpy wheel; test_installed.py runs it in a real Blender."""
 
 import json
+import re
+import shlex
 from dataclasses import fields
 
 import bpy
@@ -8,7 +10,9 @@ import numpy as np
 import pytest
 
 from addon.blender import command
+from addon.blender.command.arguments import parse
 from addon.blender.settings import Settings
+from scripts.fetch_wheels import ROOT
 from tests.blender.drawing import SQUARE, poly_curve, select, star, text, triangles, vertices
 
 BOW_TIE = [(0, 0), (1, 1), (1, 0), (0, 1)]
@@ -84,6 +88,19 @@ def test_every_setting_of_the_operator_is_an_option(capsys):
     said = capsys.readouterr().out
     assert not [each.name for each in fields(Settings) if f"--{each.name.replace('_', '-')}" not in said]
     assert "examples:" in said and "exit status: 0 all were meshed" in said
+
+
+def test_the_examples_of_the_manual_and_of_the_help_are_understood(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "drawings").mkdir()
+    for name in ("scene.blend", "logo.svg", "drawings/a.svg"):
+        (tmp_path / name).touch()
+    command.run(["mesh", "--help"])
+    pages = (ROOT / "docs" / "batch.md").read_text() + capsys.readouterr().out
+    examples = re.findall(r"^ *blender -b.* --command tessera (mesh .*)$", pages, re.MULTILINE)
+    assert len(examples) > 10
+    for example in examples:
+        assert parse(shlex.split(example)).jobs
 
 
 def test_the_command_makes_the_mesh_that_the_operator_makes(tmp_path):

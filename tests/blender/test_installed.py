@@ -6,6 +6,7 @@ up. Where there is none, these tests are skipped and say why.
 
 import json
 import os
+import re
 import signal
 import subprocess
 import time
@@ -139,6 +140,15 @@ def test_the_commands_exit_status_when_nothing_is_written(blender, scene, tmp_pa
     assert ran.returncode == status, ran.stdout + ran.stderr
     assert said in ran.stdout + ran.stderr
     assert not out.exists()
+
+
+def test_the_scripts_of_the_manual_run(blender, tmp_path):
+    scripts = re.findall(r"^```python\n(.*?)^```", (ROOT / "docs" / "batch.md").read_text(), re.MULTILINE | re.DOTALL)
+    script = tmp_path / "script.py"
+    script.write_text("".join(scripts) + "\nprint('OBJECTS', sorted(bpy.data.objects.keys()))\n")
+    ran = blender("-b", "--python-exit-code", 1, "--python", script)
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    assert "OBJECTS ['BézierCircle', 'BézierCircle Mesh', 'Plate']" in ran.stdout
 
 
 def test_every_zip_is_valid_to_this_blender(blender, zips):  # noqa: F811
