@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 
 from .. import tessera
+from ..tessera import networks
 from ..tessera.counting import expected_edge_length, mesh_to_count
 from .failures import Failure
 from .outline import Outline
@@ -76,7 +77,7 @@ def read_task(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, settings: S
 
 def mesh_task(task: Task) -> Steps[Meshed]:
     """Mesh what was read, the outlines one after the other. Raises Failure."""
-    tessera.networks.use(*execution())
+    networks.use(networks.Execution(*execution()))
     edge_length = automatic_edge_length(task.outlines, task.settings)
     counts = _shared_count(task)
     pieces, reports = [], []
