@@ -57,15 +57,8 @@ def use(execution: Execution) -> None:
 
 @cache
 def session(role: str) -> onnxruntime.InferenceSession:
-    """The session of ``nn1``, ``nn2_scores``, ``nn2_moves`` or ``nn3``; opened once."""
-    options = onnxruntime.SessionOptions()
-    options.log_severity_level = 3
-    options.intra_op_num_threads = _execution.threads
-    # Threads that wait by spinning slow everything else down, and calls here are many and short.
-    options.add_session_config_entry("session.intra_op.allow_spinning", "0")
-    wanted = dict.fromkeys([_execution.provider, "CPUExecutionProvider"])
-    providers = [name for name in wanted if name in onnxruntime.get_available_providers()]
-    return onnxruntime.InferenceSession(FOLDER / f"{role}.onnx", options, providers=providers)
+    """The session of ``nn1``, ``nn2_scores``, ``nn2_moves`` or ``nn3``; opened once. Raises RuntimeProblem."""
+    return open_session(FOLDER / f"{role}.onnx", _execution.threads, _execution.provider)
 
 
 def count_inner_vertices(contour: np.ndarray, n_contour: np.ndarray, l_s: np.ndarray) -> np.ndarray:

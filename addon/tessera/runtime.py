@@ -22,17 +22,19 @@ class RuntimeProblem(ImportError):
     """onnxruntime is missing, broken, or cannot load the networks; the message says which, where, and what to do."""
 
 
-def open_session(path: Path) -> onnxruntime.InferenceSession:
-    """A session of the network in that file, on one thread. Raises RuntimeProblem."""
+def open_session(path: Path, threads: int, provider: str) -> onnxruntime.InferenceSession:
+    """A session of the network in that file; on the CPU, where there is no such provider. Raises RuntimeProblem."""
     try:
         import onnxruntime
 
         options = onnxruntime.SessionOptions()
         options.log_severity_level = 3
-        options.intra_op_num_threads = 1
+        options.intra_op_num_threads = threads
         # Threads that wait by spinning slow everything else down, and calls here are many and short.
         options.add_session_config_entry("session.intra_op.allow_spinning", "0")
-        return onnxruntime.InferenceSession(path, options, providers=["CPUExecutionProvider"])
+        wanted = dict.fromkeys([provider, "CPUExecutionProvider"])
+        providers = [name for name in wanted if name in onnxruntime.get_available_providers()]
+        return onnxruntime.InferenceSession(path, options, providers=providers)
     except Exception as error:  # onnxruntime's own errors have no base class but this
         raise RuntimeProblem(_message(path, error)) from error
 

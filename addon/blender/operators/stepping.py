@@ -25,6 +25,10 @@ class Refusal(Exception):
     """Why nothing can be meshed at all, in the words that the user sees."""
 
 
+# An onnxruntime that is broken or too old is an ImportError, with a message for the user.
+_REFUSALS = Refusal, ImportError
+
+
 class Stepping:
     """Of an operator: `steps` meshes without a change to the scene, `write` puts what was meshed into it."""
 
@@ -39,11 +43,11 @@ class Stepping:
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Mesh everything, and only then change the scene."""
         try:
-            steps = self.steps(context)
-        except Refusal as refusal:
+            batch = finish(self.steps(context))
+        except _REFUSALS as refusal:
             self.report({"ERROR"}, str(refusal))
             return {"CANCELLED"}
-        return self._end(context, finish(steps), in_window=False)
+        return self._end(context, batch, in_window=False)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """The same; what takes long goes on in slices, with its progress in the status bar."""
@@ -51,10 +55,10 @@ class Stepping:
             return self.execute(context)
         try:
             self._steps = self.steps(context)
-        except Refusal as refusal:
+            outcome = advance(self._steps, PATIENCE)
+        except _REFUSALS as refusal:
             self.report({"ERROR"}, str(refusal))
             return {"CANCELLED"}
-        outcome = advance(self._steps, PATIENCE)
         if isinstance(outcome, Done):
             return self._end(context, outcome.result, in_window=True)
         manager = context.window_manager
