@@ -22,7 +22,7 @@ class RuntimeProblem(ImportError):
     """onnxruntime is missing, broken, or cannot load the networks; the message says which, where, and what to do."""
 
 
-def open_session(path: Path, threads: int, provider: str) -> onnxruntime.InferenceSession:
+def open_session(path: Path, threads: int = 1, provider: str = "CPUExecutionProvider") -> onnxruntime.InferenceSession:
     """A session of the network in that file; on the CPU, where there is no such provider. Raises RuntimeProblem."""
     try:
         import onnxruntime
