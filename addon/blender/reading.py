@@ -46,11 +46,6 @@ def read_outlines(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> list
     return outlines
 
 
-def read_outline(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Outline:
-    """The first of `read_outlines`."""
-    return read_outlines(obj, depsgraph)[0]
-
-
 def slots(obj: bpy.types.Object) -> tuple[bpy.types.Material | None, ...]:
     """The materials of an object's slots."""
     return tuple(slot.material for slot in obj.material_slots)

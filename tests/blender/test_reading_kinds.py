@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from mathutils import Euler, Matrix
 
+from addon.blender import writing
 from addon.blender.errors import OutlineError
 from addon.blender.kinds import is_readable
 from tests.blender import sources
@@ -50,12 +51,21 @@ def test_a_star_of_every_kind_is_read_to_the_last_bit(name):
     assert outline.splines.tolist() == ([0] if name.startswith("MESH") else [1])
 
 
+def data_blocks():
+    return {(type(item).__name__, item.name, item.users) for item in bpy.data.user_map()}
+
+
 @pytest.mark.parametrize("name", KINDS)
 def test_reading_leaves_nothing_behind(name):
     obj = KINDS[name]()
-    before = {(type(item).__name__, item.name) for item in bpy.data.user_map()}
+    before = data_blocks()
     read(obj)
-    assert {(type(item).__name__, item.name) for item in bpy.data.user_map()} == before
+    assert data_blocks() == before
+    matrix, obj.scale = obj.scale.copy(), (1, 0, 1)
+    with pytest.raises(OutlineError, match="scale is zero"):
+        read(obj)
+    obj.scale = matrix
+    assert data_blocks() == before
 
 
 @pytest.mark.parametrize("name", ["CURVE", "CURVES", "GREASEPENCIL", "MESH, wire"])
@@ -282,6 +292,27 @@ def test_the_meshes_that_geometry_nodes_place():
     outlines = read(obj)
     assert [len(outline.loops) for outline in outlines] == [1, 2]
     assert lifted(outlines[1])[:, 0].min() > lifted(outlines[0])[:, 0].mean()
+
+
+SVG = """<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">
+<rect x="5" y="5" width="30" height="40" fill="#c33"/>
+<path d="M50 5 h40 v40 h-40 z M60 15 v20 h20 v-20 z" fill="#36c"/></svg>"""
+
+
+def test_an_imported_svg_is_an_object_for_each_path(tmp_path):
+    path = tmp_path / "drawing.svg"
+    path.write_text(SVG)
+    if not hasattr(bpy.types, "IMPORT_CURVE_OT_svg"):
+        bpy.ops.preferences.addon_enable(module="io_curve_svg")
+    bpy.ops.import_curve.svg(filepath=str(path))
+    curves = sorted((obj for obj in bpy.data.objects if obj.type == "CURVE"), key=lambda obj: obj.name)
+    outlines = [outline for obj in curves for outline in read(obj)]
+    assert [len(outline.loops) for outline in outlines] == [1, 2]
+    sizes = sorted(abs(area(loop)) for outline in outlines for loop in outline.loops)
+    assert sizes == pytest.approx([0.02 * 0.02, 0.03 * 0.04, 0.04 * 0.04], rel=1e-3)
+    made = writing.write_joined([(obj, sources.meshed(read(obj))) for obj in curves])
+    assert [slot.material for slot in made.material_slots] == [obj.data.materials[0] for obj in curves]
+    assert {polygon.material_index for polygon in made.data.polygons} == {0, 1}
 
 
 @pytest.mark.parametrize("make", [lambda: text(""), lambda: mesh_object([], [], []), lambda: poly_curve()])

@@ -236,3 +236,17 @@ def test_a_selection_that_is_not_flat_says_where():
     with pytest.raises(OutlineError, match="not planar") as refusal:
         read(obj)
     assert refusal.value.point is not None
+
+
+def test_undo_is_one_step_in_edit_mode():
+    obj = cube()
+    edit(obj, faces=[2])
+    bpy.ops.ed.undo_push(message="selected")
+    write_part(obj, meshed([outline.subdivided(0.3) for outline in read(obj)], 0.3))
+    bpy.ops.ed.undo_push(message="meshed")
+    assert len(bmesh.from_edit_mesh(obj.data).faces) > 50
+    bpy.ops.ed.undo()
+    obj = bpy.context.object
+    assert obj.mode == "EDIT"
+    assert [face.index for face in bmesh.from_edit_mesh(obj.data).faces if face.select] == [2]
+    assert len(bmesh.from_edit_mesh(obj.data).faces) == 6
