@@ -53,8 +53,21 @@ def resample_loops(
     else:
         edge_length = np.broadcast_to(np.asarray(edge_length, dtype=np.float64), len(loops))
         knots = [_vertices_as_knots(*one) for one in zip(np.split(points, ends), edge_length, strict=True)]
-    positions = [_even_spacing(*one) for one in zip(np.split(breaks, ends), *zip(*knots, strict=True), strict=True)]
+    positions = [_resampled(*one) for one in zip(np.split(breaks, ends), *zip(*knots, strict=True), strict=True)]
     loop, position = np.repeat(np.arange(len(loops)), [len(p) for p in positions]), np.concatenate(positions)
+    samples, loop, _ = until_simple(points, length, loop, position, group)
+    return np.split(samples, np.cumsum(np.bincount(loop))[:-1])
+
+
+def until_simple(
+    points: np.ndarray, length: np.ndarray, loop: np.ndarray, position: np.ndarray, group: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """New vertices for simple loops, and as many of the given ones as it takes for them to be simple and nested again.
+
+    points (n, 2): of loops of `length` (m,), one behind the other; loop, position: (v,) the new vertices, by the number
+    of the edge that each lies on plus the share of it before them, ascending; group: (m,) loops of one domain. Returns
+    the vertices (w, 2) and their loops and positions (w,).
+    """
     rounds = 0
     while True:
         samples = _points_at(points, length, loop, position)
@@ -66,7 +79,7 @@ def resample_loops(
             extra_loop = np.repeat(hopeless, length[hopeless])
             extra_position = np.concatenate([np.arange(n, dtype=float) for n in length[hopeless]])
         elif len(extra_loop) == 0:
-            return np.split(samples, np.cumsum(np.bincount(loop))[:-1])
+            return samples, loop, position
         loop, position = np.concatenate([loop, extra_loop]), np.concatenate([position, extra_position])
         order = np.lexsort((position, loop))
         loop, position = loop[order], position[order]
@@ -76,9 +89,7 @@ def resample_loops(
 def _from_a_corner(points: np.ndarray, length: np.ndarray, corner_angle: float) -> tuple[np.ndarray, np.ndarray]:
     """The loops' points turned to start at a corner, or at the leftmost vertex; and which of them end an arc."""
     before, after = neighbours(length)
-    came, goes = points - points[before], points[after] - points
-    turning = np.arctan2(came[:, 0] * goes[:, 1] - came[:, 1] * goes[:, 0], np.sum(came * goes, axis=1))
-    corner = np.abs(turning) > corner_angle
+    corner = np.abs(turning_angles(points, before, after)) > corner_angle
     loop = np.repeat(np.arange(len(length)), length)
     first = np.cumsum(length) - length
     start = np.lexsort((points[:, 1], points[:, 0], ~corner, loop))[first] - first
@@ -86,6 +97,12 @@ def _from_a_corner(points: np.ndarray, length: np.ndarray, corner_angle: float) 
     points, corner = points[turned], corner[turned]
     corner[first] = True
     return points, corner
+
+
+def turning_angles(points: np.ndarray, before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """By how much loops turn at each of their points (n, 2), in radians, to the left: (n,)."""
+    came, goes = points - points[before], points[after] - points
+    return np.arctan2(came[:, 0] * goes[:, 1] - came[:, 1] * goes[:, 0], np.sum(came * goes, axis=1))
 
 
 def _vertices_as_knots(points: np.ndarray, edge_length: float) -> tuple[np.ndarray, np.ndarray, float]:
@@ -127,16 +144,28 @@ def _knots(points, length, group, wanted: Callable) -> list[tuple[np.ndarray, np
     ]
 
 
-def _even_spacing(breaks: np.ndarray, position: np.ndarray, passed: np.ndarray, an_edge: float) -> np.ndarray:
+def count_edges(passed: np.ndarray) -> np.ndarray:
+    """How many edges each arc of a loop comes to (a,), at least 3 together; passed: (a,) wanted edges it is long."""
+    n_edges = np.maximum(np.rint(passed * (1 - _TIE)), 1).astype(np.int64)
+    n_edges[np.argmax(passed)] += max(3 - n_edges.sum(), 0)
+    return n_edges
+
+
+def halvable(n_edges: np.ndarray) -> np.ndarray:
+    """Numbers of edges near these (a,), by at most a tenth, that can be halved a few times (`coarsening.py`)."""
+    for parts in (2, 4, 8):
+        n_edges = np.where(n_edges >= 5 * parts, parts * ((n_edges + parts // 2) // parts), n_edges)
+    return n_edges
+
+
+def even_spacing(arc_start: np.ndarray, position: np.ndarray, passed: np.ndarray, n_edges: np.ndarray) -> np.ndarray:
     """Places (n,) of one loop's new vertices: the number of the edge they lie on plus the share of it before them.
 
-    position, passed, an_edge: as of `_vertices_as_knots`.
+    arc_start: (a,) vertices that stay, of which the first is one; n_edges: (a,) from each to the next; position,
+    passed: as of `_vertices_as_knots`.
     """
-    arc_start = np.nonzero(breaks)[0]
     knot = np.searchsorted(position, arc_start)
     arc_length = np.diff(passed[knot], append=passed[-1])
-    n_edges = np.maximum(np.rint(arc_length / an_edge * (1 - _TIE)), 1).astype(np.int64)
-    n_edges[np.argmax(arc_length)] += max(3 - n_edges.sum(), 0)
     arc = np.repeat(np.arange(len(arc_start)), n_edges)
     step = np.arange(len(arc)) - np.repeat(np.cumsum(n_edges) - n_edges, n_edges)
     target = passed[knot[arc]] + step / n_edges[arc] * arc_length[arc]
@@ -146,6 +175,13 @@ def _even_spacing(breaks: np.ndarray, position: np.ndarray, passed: np.ndarray, 
     share = np.where(step == 0, 0.0, np.clip(share, 0.0, 1.0 - 2.0**-30))
     places = position[before] + share * (position[before + 1] - position[before])
     return np.minimum(places, np.nextafter(position[-1], 0))
+
+
+def _resampled(breaks: np.ndarray, position: np.ndarray, passed: np.ndarray, an_edge: float) -> np.ndarray:
+    """`even_spacing` at the target edge length; breaks: (k,) bool, which of a loop's vertices stay."""
+    arc_start = np.flatnonzero(breaks)
+    arcs = np.diff(passed[np.searchsorted(position, arc_start)], append=passed[-1])
+    return even_spacing(arc_start, position, passed, halvable(count_edges(arcs / an_edge)))
 
 
 def _points_at(points: np.ndarray, length: np.ndarray, loop: np.ndarray, position: np.ndarray) -> np.ndarray:

@@ -9,23 +9,20 @@ from itertools import repeat
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .assembly import mean_edge_lengths, mesh_cells, wanted_edge_lengths
 from .boundary import resample_loops
-from .bridges import bridge_holes
 from .contour import Nesting, clean_domains, clean_loop, nesting, signed_area
-from .division import divide
 from .errors import ContourError
 from .flips import flip_edges
 from .gradation import Target, prepare
+from .levels import RegionMeshes, Regions, mesh_by_levels
 from .mesh import Mesh, make_mesh
 from .notices import long_edge_warnings, lost_area_warnings
 from .placement import MOST_INNER
-from .refinement import refine
-from .remeshing import improve
 from .scheme import LARGEST_CONTOUR, join_vertices, mesh_contours
-from .sizing import FromLoops, Sizing, checked_edge_length, checked_limits, grade_from_edges, positive
-from .smoothing import checked_steps
-from .smoothing import smooth as move_downhill
+from .settings import Settings
+from .sizing import Limits, Sizing, checked_edge_length
+from .smoothing import checked_steps, smooth_in_steps
+from .steps import Progress, Steps, finish, within
 from .stopwatch import Stopwatch
 
 MOST_TRIANGLES = 5_000_000
@@ -40,6 +37,7 @@ def mesh(
     gradation: float = 1.3,
     boundary: str = "resample",
     corner_angle: float = 32.0,
+    passes: int = 3,
     flips: bool = False,
     smooth: int = 0,
 ) -> Mesh:
@@ -48,7 +46,8 @@ def mesh(
     loops: (k, 2) arrays, in any winding and order: outer contours, holes and islands in them by the even-odd rule.
     edge_length: the target, in the loops' unit. boundary: "resample" places vertices on the given polylines at the
     target edge length, keeping their corners, which turn by more than corner_angle degrees; "keep" keeps exactly the
-    given vertices and adds none on the contour. flips: a last pass exchanges edges where that raises the worse quality
+    given vertices and adds none on the contour. passes: how often in a row NN2 is asked for better places of all inner
+    vertices. flips: a last pass exchanges edges where that raises the worse quality
     of the two elements beside them. smooth: how often every inner vertex may move after that, to better the poorest
     elements.
 
@@ -60,8 +59,33 @@ def mesh(
     Raises ContourError, whose ``reason`` is a short word, for input that cannot be meshed, and a plain ValueError for
     what is no sequence of (k, 2) arrays of numbers.
     """
-    wanted = sizing, min_edge_length, gradation, corner_angle
-    (result,) = mesh_domains([loops], edge_length, boundary, flips, smooth, *wanted)
+    settings = Settings(sizing, min_edge_length, gradation, boundary, corner_angle, passes, flips, smooth)
+    return finish(_one_in_steps(loops, edge_length, settings))
+
+
+def mesh_in_steps(
+    loops: Sequence[ArrayLike],
+    edge_length: float,
+    *,
+    sizing: Sizing | None = None,
+    min_edge_length: float | None = None,
+    gradation: float = 1.3,
+    boundary: str = "resample",
+    corner_angle: float = 32.0,
+    passes: int = 3,
+    flips: bool = False,
+    smooth: int = 0,
+) -> Steps[Mesh]:
+    """What `mesh` does, as a generator: it yields a `Progress` several times a second, and returns the Mesh.
+
+    Closing the generator stops the work. Raises as `mesh` does, when it comes to it.
+    """
+    settings = Settings(sizing, min_edge_length, gradation, boundary, corner_angle, passes, flips, smooth)
+    return _one_in_steps(loops, edge_length, settings)
+
+
+def _one_in_steps(loops: Sequence[ArrayLike], edge_length: float, settings: Settings) -> Steps[Mesh]:
+    (result,) = yield from domains_in_steps([loops], edge_length, settings)
     if isinstance(result, ContourError):
         raise result
     return result
@@ -75,6 +99,7 @@ def mesh_many(
     min_edge_length: float | None = None,
     gradation: float = 1.3,
     corner_angle: float = 32.0,
+    passes: int = 3,
     flips: bool = False,
     smooth: int = 0,
 ) -> list[Mesh | ContourError]:
@@ -82,8 +107,8 @@ def mesh_many(
 
     Raises ContourError "edge-length" where no domain could be meshed at that length.
     """
-    wanted = sizing, min_edge_length, gradation, corner_angle
-    return mesh_domains(domains, edge_length, "resample", flips, smooth, *wanted)
+    settings = Settings(sizing, min_edge_length, gradation, "resample", corner_angle, passes, flips, smooth)
+    return mesh_domains(domains, edge_length, settings)
 
 
 def mesh_contour(points: ArrayLike, edge_length: float, *, flips: bool = False, smooth: int = 0) -> Mesh:
@@ -106,8 +131,7 @@ def mesh_contour(points: ArrayLike, edge_length: float, *, flips: bool = False, 
     meshes = mesh_contours(contour[None], n_contour, np.array([edge_length]), watch, flips)
     (vertices,) = join_vertices(contour[None], n_contour, meshes.inner, meshes.n_inner)
     if smooth:
-        with watch("smoothing"):
-            vertices = move_downhill(vertices, meshes.triangles, smooth)
+        vertices = finish(smooth_in_steps(vertices, meshes.triangles, smooth, np.zeros(len(meshes.triangles)), watch))
     warnings = long_edge_warnings([contour], lambda places: np.full(len(places), edge_length))
     if meshes.n_inner[0] < meshes.wanted[0]:
         warnings += (
@@ -120,48 +144,41 @@ def mesh_contour(points: ArrayLike, edge_length: float, *, flips: bool = False, 
 
 
 def mesh_domains(
-    domains: Sequence[Sequence[ArrayLike]],
-    edge_length: float,
-    boundary: str,
-    flips: bool,
-    smooth: int,
-    sizing: Sizing | None = None,
-    min_edge_length: float | None = None,
-    gradation: float = 1.3,
-    corner_angle: float = 32.0,
+    domains: Sequence[Sequence[ArrayLike]], edge_length: float, settings: Settings
 ) -> list[Mesh | ContourError]:
+    """`domains_in_steps`, at once."""
+    return finish(domains_in_steps(domains, edge_length, settings))
+
+
+def domains_in_steps(
+    domains: Sequence[Sequence[ArrayLike]], edge_length: float, settings: Settings
+) -> Steps[list[Mesh | ContourError]]:
     """Mesh many domains as one batch: a Mesh, or the ContourError that it has, for each."""
-    if boundary not in ("resample", "keep"):
-        raise ValueError(f'boundary is "resample" or "keep", not {boundary!r}')
-    smooth = checked_steps(smooth)
-    limits = checked_limits(edge_length, min_edge_length, gradation, corner_angle)
-    if sizing is not None and not callable(sizing) and not isinstance(sizing, FromLoops):
-        number = max(positive(sizing, "sizing"), limits.shortest or 0.0)
-        sizing, limits = None, replace(limits, longest=min(limits.longest, number))
+    sizing, limits = settings.checked(edge_length)
     watch = Stopwatch()
     with watch("contours"):
         cleaned = clean_domains(domains)
         nested = [nesting([] if isinstance(loops, ContourError) else loops) for loops in cleaned]
         results = list(map(checked_domain, cleaned, nested, repeat(limits.longest)))
+    yield Progress("contours", 0.02)
     with watch("sizing"):
         sound = {number: result for number, result in enumerate(results) if not isinstance(result, ContourError)}
         target, errors = prepare(sound, sizing, limits, MOST_TRIANGLES)
         results = [errors.get(number, result) for number, result in enumerate(results)]
-    with watch("boundary"):
-        numbers = [number for number, result in enumerate(results) if not isinstance(result, ContourError)]
-        loops = [loop for number in numbers for loop in results[number]]
-        domain = np.repeat(numbers, [len(results[number]) for number in numbers]).astype(np.int64)
-        region, is_hole = _regions([nested[number] for number in numbers])
-        if boundary == "resample" and loops:
-            spacing = limits.longest if target.constant else target
-            loops = resample_loops(loops, spacing, domain, limits.corner_angle)
-    if loops:
-        parts = _mesh_regions(loops, region, is_hole, domain, target, flips, smooth, watch)
-        vertices, triangles, owner, fallbacks = parts
-        of = domain[owner]
-        fell = np.bincount(domain, fallbacks, minlength=len(results)).astype(int)
-        for number, (part, elements) in zip(numbers, _parts(vertices, triangles, of, numbers), strict=True):
-            if boundary == "keep":
+    yield Progress("sizing", 0.05)
+    numbers = [number for number, result in enumerate(results) if not isinstance(result, ContourError)]
+    if numbers:
+        with watch("boundary"):
+            regions = _regions(results, nested, numbers)
+            if settings.boundary == "resample":
+                spacing = limits.longest if target.constant else target
+                loops = resample_loops(regions.loops, spacing, regions.domain, limits.corner_angle)
+                regions = replace(regions, loops=loops)
+        meshes = yield from within(_finished(regions, target, limits, settings, watch), 0.1, 1.0)
+        fell = np.bincount(regions.domain, meshes.fallbacks, minlength=len(results)).astype(int)
+        parts = _parts(meshes.vertices, meshes.triangles, regions.domain[meshes.region], numbers)
+        for number, (part, elements) in zip(numbers, parts, strict=True):
+            if settings.boundary == "keep":
                 warnings = long_edge_warnings(
                     results[number], lambda places, n=number: target(places, np.full(len(places), n))
                 )
@@ -172,6 +189,22 @@ def mesh_domains(
                 part, elements, fallbacks=int(fell[number]), warnings=warnings, seconds=watch.seconds
             )
     return [target.errors.get(number, result) for number, result in enumerate(results)]
+
+
+def _finished(
+    regions: Regions, target: Target, limits: Limits, settings: Settings, watch: Stopwatch
+) -> Steps[RegionMeshes]:
+    """The regions' meshes, after the passes that were asked for."""
+    end = 0.8 if settings.smooth else 1.0
+    meshing = mesh_by_levels(regions, target, limits.corner_angle, settings.passes, watch)
+    meshes = yield from within(meshing, 0.0, end)
+    if settings.flips:
+        with watch("flips"):
+            meshes = replace(meshes, triangles=flip_edges(meshes.vertices, meshes.triangles))
+    if settings.smooth:
+        smoothing = smooth_in_steps(meshes.vertices, meshes.triangles, settings.smooth, meshes.region, watch)
+        meshes = replace(meshes, vertices=(yield from within(smoothing, end, 1.0)))
+    return meshes
 
 
 def checked_domain(
@@ -204,66 +237,19 @@ def enclosed_area(loops: list[np.ndarray], nested: Nesting) -> float:
     return float(areas[nested.outer].sum() - areas[nested.holes].sum())
 
 
-def _regions(nested: list[Nesting]) -> tuple[np.ndarray, np.ndarray]:
-    """Of all loops of domains, one behind the other: the number of the outer contour around each (l,), and the holes.
-
-    An outer contour is its own; the numbers count all the loops.
-    """
+def _regions(results: list, nested: list[Nesting], numbers: list[int]) -> Regions:
+    """The regions of the numbered domains, by their loops and how these are nested."""
     region, is_hole, first = [], [], 0
-    for loops in nested:
+    for number in numbers:
+        loops = nested[number]
         own = np.arange(len(loops.outer) + len(loops.holes))
         own[loops.holes] = loops.parent
         region.append(own + first)
         is_hole.append(np.isin(np.arange(len(own)), loops.holes))
         first += len(own)
-    if not region:
-        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=bool)
-    return np.concatenate(region), np.concatenate(is_hole)
-
-
-def _mesh_regions(
-    loops: list[np.ndarray],
-    region: np.ndarray,
-    is_hole: np.ndarray,
-    domain: np.ndarray,
-    target: Target,
-    flips: bool,
-    smooth: int,
-    watch: Stopwatch,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Mesh what loops bound (`bridge_holes`): vertices (n, 2), triangles (m, 3), the region of each (m,), fallbacks.
-
-    domain: (l,) the number that the target knows each loop's domain by. The fallbacks are counted by region (l,), for
-    as many as there are loops.
-    """
-
-    def wanted(points: np.ndarray, region: np.ndarray) -> np.ndarray:
-        """The target at points (n, 2) of regions (n,)."""
-        return target(points, domain[region])
-
-    with watch("division"):
-        longest, varying = target.most[domain], None if target.constant else wanted
-        points, polygons = bridge_holes(loops, region, is_hole, longest, varying)
-        division = divide(points, polygons, longest, varying)
-        if target.constant:
-            cell_target = mean_edge_lengths(division.points, division.cells)
-        else:
-            cell_target = wanted_edge_lengths(division.points, division.cells, division.owner, wanted)
-    vertices, triangles, cell, fallbacks = mesh_cells(division.points, division.cells, cell_target, watch)
-    owner = division.owner[cell]
-    sizing = grade_from_edges(loops, region, wanted)
-    vertices, triangles, parent, more = refine(vertices, triangles, owner, sizing, watch)
-    counts = np.bincount(division.owner, fallbacks, minlength=len(loops))
-    counts += np.bincount(owner, more, minlength=len(loops))
-    vertices, triangles, owner, again = improve(vertices, triangles, owner[parent], watch)
-    counts[: len(again)] += again
-    if flips:
-        with watch("flips"):
-            triangles = flip_edges(vertices, triangles)
-    if smooth:
-        with watch("smoothing"):
-            vertices = move_downhill(vertices, triangles, smooth, owner)
-    return vertices, triangles, owner, counts
+    domain = np.repeat(numbers, [len(results[number]) for number in numbers]).astype(np.int64)
+    loops = [loop for number in numbers for loop in results[number]]
+    return Regions(loops, np.concatenate(region), np.concatenate(is_hole), domain)
 
 
 def _parts(

@@ -57,7 +57,7 @@ def use(execution: Execution) -> None:
 
 @cache
 def session(role: str) -> onnxruntime.InferenceSession:
-    """The session of ``nn1``, ``nn2_scores``, ``nn2_moves`` or ``nn3``; opened once. Raises RuntimeProblem."""
+    """The session of ``nn1``, ``nn2_scores``, ``nn2_moves``, ``nn2_star`` or ``nn3``; opened once. Raises RuntimeProblem."""
     return open_session(FOLDER / f"{role}.onnx", _execution.threads, _execution.provider)
 
 
@@ -129,6 +129,22 @@ def move_inner_vertices(
         size = min(m, inner.shape[1])
         moved[rows, :size] = np.where(np.isfinite(out[:, :size]), out[:, :size], inner[rows, :size])
     return np.where((np.arange(inner.shape[1]) < n_inner[:, None])[..., None], moved, inner)
+
+
+def centre_stars(ring: np.ndarray, n_ring: np.ndarray) -> np.ndarray:
+    """NN2 of stars: the places (S, 2) of the only inner vertices of rings that are about as large as 1.
+
+    ring: (S, R + 2, 2), counter-clockwise, the last of each one's n_ring (S,) vertices before the first, the first
+    after the last, and in the padding.
+    """
+    share = np.where(np.arange(ring.shape[1] - 2) < n_ring[:, None], 1 / n_ring[:, None], 0)
+    ring, share = ring.astype(np.float32), share.astype(np.float32)[..., None]
+    step = _CALL_SIZE // ring.shape[1]
+    found = [
+        session("nn2_star").run(None, {"ring": ring[rows], "share": share[rows]})[0]
+        for rows in (slice(first, first + step) for first in range(0, len(ring), step))
+    ]
+    return np.concatenate(found).astype(np.float64)
 
 
 def rate_connections(
