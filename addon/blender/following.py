@@ -13,7 +13,6 @@ import bpy
 from bpy.app.handlers import persistent
 
 from .linked import fingerprint, is_linked, linked_settings, source_is_there
-from .progress import finish
 
 # Meshes that took longer than this many seconds wait until their source has not changed for as long as _REST.
 _QUICK, _REST = 0.2, 0.4
@@ -68,7 +67,7 @@ def mesh_again(obj: bpy.types.Object) -> bool:
             if obj.tessera.message:
                 obj.tessera.message = ""
             return False
-        results.rewrite(obj, finish(meshing.mesh_task(task)))
+        results.rewrite(obj, meshing.finish(meshing.mesh_task(task)))
     except meshing.Failure as failure:
         obj.tessera.message = str(failure)
         return False

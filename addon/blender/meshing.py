@@ -13,10 +13,11 @@ import numpy as np
 from .. import tessera
 from ..tessera import networks
 from ..tessera.counting import expected_edge_length, mesh_to_count
+from ..tessera.steps import Steps, finish, within
 from .failures import Failure
 from .outline import Outline
 from .preferences import execution
-from .progress import Steps, finish, within
+from .progress import named
 from .reading import read_outlines
 from .settings import EDGES_ALONG, NEAR_SHARE, Settings
 from .targets import Targets, read_targets, sizing_of
@@ -90,7 +91,7 @@ def mesh_task(task: Task) -> Steps[Meshed]:
             _check_rounding(outline, made)
         except tessera.ContourError as error:
             raise Failure(task.obj, error, outline) from error
-        pieces.append(Piece(outline, made.vertices, made.triangles, made.region))
+        pieces.append(Piece(outline, made.vertices, made.triangles, getattr(made, "region", None)))
         reports.append(made.report)
     return Meshed(task, edge_length, tuple(pieces), tuple(reports))
 
@@ -118,8 +119,8 @@ def mesh_all(objects: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph, se
             failures.append(failure)
     for number, task in enumerate(tasks):
         try:
-            steps = within(mesh_task(task), number / len(tasks), (number + 1) / len(tasks), task.obj.name)
-            meshed.append((yield from steps))
+            steps = named(mesh_task(task), task.obj.name)
+            meshed.append((yield from within(steps, number / len(tasks), (number + 1) / len(tasks))))
         except Failure as failure:
             failures.append(failure)
     return Batch(tuple(meshed), tuple(failures))

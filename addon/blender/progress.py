@@ -1,7 +1,4 @@
-"""Work in steps: generators that yield their progress now and then, and return what they make.
-
-A script runs one to its end; a window runs it a slice at a time, so that it stays alive and can be cancelled.
-"""
+"""A window's way to take the steps of long work: a slice at a time, so that it stays alive and can be cancelled."""
 
 from __future__ import annotations
 
@@ -14,6 +11,7 @@ if TYPE_CHECKING:
     from ..tessera import Progress
 
 T = TypeVar("T")
+# As in tessera.steps, which is not imported here, as enabling the add-on would load the mesher.
 Steps = Generator["Progress", None, T]
 
 
@@ -22,15 +20,6 @@ class Done:
     """What finished steps made."""
 
     result: object
-
-
-def finish(steps: Steps[T]) -> T:
-    """Run to the end."""
-    while True:
-        try:
-            next(steps)
-        except StopIteration as end:
-            return end.value
 
 
 def advance(steps: Steps[T], seconds: float) -> Progress | Done:
@@ -45,15 +34,11 @@ def advance(steps: Steps[T], seconds: float) -> Progress | Done:
             return progress
 
 
-def within(steps: Steps[T], first: float, last: float, what: str = "") -> Steps[T]:
-    """The same steps as a part of more work, of which their shares are those from `first` to `last`.
-
-    what: said before the stage's name.
-    """
+def named(steps: Steps[T], name: str) -> Steps[T]:
+    """The same steps, with what they work on said before the stage."""
     while True:
         try:
             progress = next(steps)
         except StopIteration as end:
             return end.value
-        stage = f"{what}: {progress.stage}" if what else progress.stage
-        yield replace(progress, stage=stage, share=first + (last - first) * progress.share)
+        yield replace(progress, stage=f"{name}: {progress.stage}")

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -12,9 +11,7 @@ from numpy.typing import ArrayLike
 from .contour import clean_domains, nesting, signed_area
 from .errors import ContourError
 from .mesh import Mesh
-
-if TYPE_CHECKING:
-    from .progress import Progress
+from .steps import Steps, within
 
 TOLERANCE = 0.1  # of the wanted number
 MOST_TRIES = 6
@@ -40,9 +37,7 @@ def expected_edge_length(loops: Sequence[ArrayLike], n_triangles: int) -> float:
     return (beside + (beside**2 + 4 * wanted * area) ** 0.5) / (2 * wanted)
 
 
-def mesh_to_count(
-    loops: Sequence[ArrayLike], n_triangles: int, mesh_at: Callable[[float], Generator[Progress, None, Mesh]]
-) -> Generator[Progress, None, Mesh]:
+def mesh_to_count(loops: Sequence[ArrayLike], n_triangles: int, mesh_at: Callable[[float], Steps[Mesh]]) -> Steps[Mesh]:
     """Mesh until the number of triangles is within 10 % of the wanted one: gives the closest of at most six meshes.
 
     mesh_at: takes a target edge length and meshes the loops in steps. Where corners, a kept boundary or limits of the
@@ -52,7 +47,8 @@ def mesh_to_count(
     tried: list[tuple[float, float]] = []  # logarithms of the length, and of the count over the wanted one
     best, error = None, np.inf
     for number in range(MOST_TRIES):
-        mesh = yield from _half_of_the_rest(mesh_at(length), number)
+        # Nobody knows how many tries will follow: each has half of what is left.
+        mesh = yield from within(mesh_at(length), 1 - 0.5**number, 1 - 0.5 ** (number + 1))
         ratio = mesh.report.n_triangles / n_triangles
         if abs(ratio - 1) < error:
             best, error = mesh, abs(ratio - 1)
@@ -84,14 +80,3 @@ def _next(tried: list[tuple[float, float]]) -> float:
         return length + ratio / 2 * len(tried)
     share = np.clip(more[1] / (more[1] - fewer[1]), 0.1, 0.9)
     return more[0] + share * (fewer[0] - more[0])
-
-
-def _half_of_the_rest(steps: Generator[Progress, None, Mesh], number: int) -> Generator[Progress, None, Mesh]:
-    """The steps of the try of that number, whose shares are half of what is left: nobody knows how many will follow."""
-    done = 1 - 0.5**number
-    try:
-        while True:
-            progress = next(steps)
-            yield replace(progress, share=done + progress.share * 0.5 ** (number + 1))
-    except StopIteration as end:
-        return end.value

@@ -57,7 +57,10 @@ def use(execution: Execution) -> None:
 
 @cache
 def session(role: str) -> onnxruntime.InferenceSession:
-    """The session of ``nn1``, ``nn2_scores``, ``nn2_moves``, ``nn2_star`` or ``nn3``; opened once. Raises RuntimeProblem."""
+    """The session of ``nn1``, ``nn2_scores``, ``nn2_moves``, ``nn2_star`` or ``nn3``; opened once.
+
+    Raises RuntimeProblem.
+    """
     return open_session(FOLDER / f"{role}.onnx", _execution.threads, _execution.provider)
 
 

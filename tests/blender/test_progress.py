@@ -1,10 +1,10 @@
-"""Work in steps: run to its end, in slices, and as a part of more."""
+"""Work in steps: in slices, with its names, and closed."""
 
 import time
 
 import pytest
 
-from addon.blender.progress import Done, advance, finish, within
+from addon.blender.progress import Done, advance, named
 from addon.tessera import Progress
 
 
@@ -13,10 +13,6 @@ def work(n_steps=10, seconds=0.0):
         time.sleep(seconds)
         yield Progress("stage", number / n_steps)
     return "made"
-
-
-def test_steps_run_to_their_end():
-    assert finish(work()) == "made"
 
 
 def test_slices_are_about_as_long_as_asked_for():
@@ -30,12 +26,12 @@ def test_slices_are_about_as_long_as_asked_for():
     assert all(0.05 <= took < 0.2 for took in slices[:-1])
 
 
-def test_steps_as_a_part_of_more():
-    steps, seen = within(work(4), 0.5, 0.75, "Logo"), []
+def test_steps_say_what_they_work_on():
+    steps, seen = named(work(4), "Logo"), []
     with pytest.raises(StopIteration) as end:
         while True:
             seen.append(next(steps))
-    assert [progress.share for progress in seen] == pytest.approx([0.5, 0.5625, 0.625, 0.6875])
+    assert [progress.share for progress in seen] == [0, 0.25, 0.5, 0.75]
     assert seen[0].stage == "Logo: stage" and end.value.value == "made"
 
 
@@ -48,7 +44,7 @@ def test_what_is_closed_stops():
         finally:
             stopped.append(True)
 
-    steps = within(watched(), 0, 1)
+    steps = named(watched(), "Logo")
     next(steps)
     steps.close()
     assert stopped

@@ -8,7 +8,7 @@ import bpy
 
 from .. import notes
 from ..layout import draw_failures
-from ..progress import Done, Steps, advance, finish
+from ..progress import Done, Steps, advance
 
 if TYPE_CHECKING:
     from ..meshing import Batch
@@ -43,6 +43,8 @@ class Stepping:
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Mesh everything, and only then change the scene."""
         try:
+            from ...tessera.steps import finish  # here, so that enabling the add-on does not load the mesher
+
             batch = finish(self.steps(context))
         except _REFUSALS as refusal:
             self.report({"ERROR"}, str(refusal))
