@@ -23,7 +23,7 @@ DOMAINS = {
     "square": [SQUARE],
     "ring": [circle(), circle(0.6)],
     "star": [star()],
-    "strip": [SQUARE * (10, 0.3)],
+    "strip": [SQUARE * (10, 1)],
     "far and tiny": [1e-6 * star() + 5],
     "plate": [SQUARE * 4, circle(0.5) + 1, circle(0.3) + 3],
 }
