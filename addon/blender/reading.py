@@ -28,7 +28,7 @@ def read_outlines(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> list
     """
     if obj.type == "MESH" and obj.mode == "EDIT":
         return read_parts(obj)
-    if obj.type == "CURVE" and obj.mode == "EDIT":
+    if obj.type == "CURVE" and obj.mode == "EDIT" and obj.modifiers:
         _bring_edits(obj, depsgraph)
     evaluated = obj.evaluated_get(depsgraph)
     world = np.array(evaluated.matrix_world, dtype=np.float64)

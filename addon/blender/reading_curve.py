@@ -40,6 +40,9 @@ def read_curve(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> l
 @contextmanager
 def _control_points(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Iterator[bpy.types.Curve]:
     """The curve that modifiers on control points leave, or that a text is; nothing of it is left afterwards."""
+    if evaluated.type == "CURVE" and evaluated.mode == "EDIT" and not evaluated.modifiers:
+        yield evaluated.data  # the splines as they are being edited
+        return
     try:
         yield evaluated.to_curve(depsgraph, apply_modifiers=True)
     finally:

@@ -20,7 +20,7 @@ _NO_SELECTION = "No face and no closed edge loop is selected. Select the flat pa
 
 def read_parts(obj: bpy.types.Object) -> list[Outline]:
     """One outline for each flat part of the selection, its `part` set; edges that are seams, sharp or beside another
-    material are kept, as borders between parts.
+    material are kept, as borders between parts (one that ends inside a part is none, and goes).
 
     Raises OutlineError: "too-few-points" where nothing is selected, "open", "not-planar", "zero-area".
     """

@@ -239,8 +239,12 @@ def test_a_meshs_modifiers_are_read():
     assert len(read(obj)[0].loops) == 3
 
 
-def test_a_curve_is_read_while_it_is_edited():
+@pytest.mark.parametrize("modified", [False, True])
+def test_a_curve_is_read_while_it_is_edited(modified):
     curve = poly_curve(SQUARE)
+    if modified:
+        modifier = curve.modifiers.new("Cast", "CAST")
+        modifier.use_apply_on_spline, modifier.factor = True, 0.0
     bpy.ops.object.mode_set(mode="EDIT")
     curve.data.splines[0].points[2].co.x = 3.0
     (outline,) = read(curve)
