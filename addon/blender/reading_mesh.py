@@ -4,16 +4,37 @@ import bpy
 import numpy as np
 
 from .chains import outline_edges, polylines
+from .errors import OutlineError
 from .outline import Polyline
+from .plane import fit_plane
+
+_NOT_FLAT = "It is not flat. Select the flat part that is to be meshed again, in Edit Mode."
 
 
 def read_mesh(evaluated: bpy.types.Object) -> list[Polyline]:
-    """The outlines of a mesh object as its modifiers leave it."""
+    """The outlines of a mesh object as its modifiers leave it. Raises OutlineError "not-planar" if it is not flat."""
     mesh = evaluated.to_mesh()
     try:
-        return borders(mesh)
+        made, has_faces = borders(mesh), len(mesh.polygons) > 0
+        if has_faces:
+            _check_flat(mesh, made)
+        return made
     finally:
         evaluated.to_mesh_clear()
+
+
+def _check_flat(mesh: bpy.types.Mesh, outlines: list[Polyline]) -> None:
+    """A mesh of faces is flat if its vertices are; its outlines alone would say nothing of what is between them."""
+    points = np.empty((len(mesh.vertices), 3), dtype=np.float32)
+    mesh.vertices.foreach_get("co", points.ravel())
+    points = points.astype(np.float64)
+    if not np.isfinite(points).all():
+        return  # said of the outlines, with the place
+    try:
+        fit_plane(points, np.eye(3))
+    except OutlineError as error:
+        if error.reason == "not-planar" or not outlines:
+            raise OutlineError("not-planar", _NOT_FLAT, error.point) from error
 
 
 def borders(mesh: bpy.types.Mesh) -> list[Polyline]:

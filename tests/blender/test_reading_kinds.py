@@ -232,6 +232,17 @@ def test_a_mesh_with_holes_and_what_its_faces_have():
     assert outline.materials.tolist() == [1, 1] and outline.smooth.tolist() == [False, False]
 
 
+def test_a_mesh_that_is_not_flat_is_told_from_one_without_anything():
+    bpy.ops.mesh.primitive_cube_add()
+    with pytest.raises(OutlineError, match="flat part that is to be meshed again, in Edit Mode") as refusal:
+        read(bpy.context.object)
+    assert refusal.value.reason == "not-planar"
+    # A cone without its base has a flat border, and is not flat.
+    bpy.ops.mesh.primitive_cone_add(end_fill_type="NOTHING")
+    with pytest.raises(OutlineError, match="It is not flat"):
+        read(bpy.context.object)
+
+
 def test_a_meshs_modifiers_are_read():
     obj = mesh_object(flat(np.array(SQUARE)), [], [(0, 1, 2, 3)])
     modifier = obj.modifiers.new("Array", "ARRAY")
