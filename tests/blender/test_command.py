@@ -1,12 +1,18 @@
 """The command's own decisions, on the bpy wheel; test_installed.py runs it in a real Blender."""
 
 import json
+import os
 import re
 import shlex
+import shutil
+import subprocess
+import sys
 from dataclasses import fields
+from pathlib import Path
 
 import bpy
 import numpy as np
+import onnxruntime
 import pytest
 
 from addon.blender import command
@@ -174,3 +180,20 @@ def test_an_output_that_fails_is_one_line_and_not_success(tmp_path, capsys):
     assert "was not written: " in capsys.readouterr().err
     assert run(tmp_path / ("long" * 100 + ".blend")) == 1
     assert "too long" in capsys.readouterr().err
+
+
+def test_a_broken_onnxruntime_of_another_add_on_is_said_in_one_line(tmp_path):
+    package = tmp_path / "others" / "onnxruntime"
+    shutil.copytree(
+        Path(onnxruntime.__file__).parent, package, ignore=shutil.ignore_patterns("*.so*", "*.pyd", "*.dll")
+    )
+    poly_curve(SQUARE, name="A")
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
+    script = ROOT / "tests" / "blender" / "run_command.py"
+    words = [sys.executable, script, tmp_path / "scene.blend", "mesh", "--output", tmp_path / "out.blend"]
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(package.parent), str(ROOT)])}
+    ran = subprocess.run(words, env=environment, capture_output=True, text=True, timeout=100)
+    (said,) = [line for line in ran.stderr.splitlines() if line.startswith("tessera: ")]
+    assert ran.returncode == 1 and "Traceback" not in ran.stderr
+    assert f"found in '{package}', cannot load the network" in said and "disable or update" in said
+    assert not (tmp_path / "out.blend").exists()

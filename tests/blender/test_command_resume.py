@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from addon.blender import command
 from addon.blender.command import journal
-from addon.blender.command.claims import PATIENCE, Claims
+from addon.blender.command.claims import PATIENCE, Claims, RunIsOver
 from scripts.fetch_wheels import ROOT
 from tests.blender.drawing import SQUARE, poly_curve, star, triangles, vertices
 
@@ -99,6 +99,8 @@ def test_files_that_are_done_are_not_opened_again(tmp_path):
     (drawings / "b.svg").touch()
     (drawings / "c.svg").write_bytes((drawings / "a.svg").read_bytes())
     assert run(tmp_path, *words)[0] == 0
+    earlier = [record["earlier"] for record in json.loads((tmp_path / "report.json").read_text())["curves"]]
+    assert earlier == [True, False, False]
     again = {path.name: path.stat().st_mtime_ns for path in out.glob("*.stl")}
     assert sorted(again) == ["a.stl", "b.stl", "c.stl"] and again["a.stl"] == written["a.stl"]
     assert again["b.stl"] > written["b.stl"]
@@ -163,5 +165,5 @@ def test_a_claim_is_given_once_and_none_when_no_one_leads(tmp_path):
     assert first.claim(0, 1) and not second.claim(0, 1) and second.claim(0) and second.is_claimed(0, 1)
     assert not first.is_claimed(1) and first.count() == 2
     os.utime(tmp_path / "alive", (0, time.time() - PATIENCE - 1))
-    with pytest.raises(SystemExit):
+    with pytest.raises(RunIsOver):
         second.claim(5)

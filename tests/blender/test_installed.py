@@ -176,8 +176,8 @@ def test_a_folder_is_meshed_by_two_processes(blender, scene, tmp_path):
 
 def test_two_processes_on_one_file_are_killed_and_taken_up_again(blender, tmp_path):
     scene, report, alone = tmp_path / "scene.blend", tmp_path / "report.json", tmp_path / "alone.obj"
-    blender("-b", "--factory-startup", "--python", HERE / "make_scene.py", "--", scene, 16)
-    command = ("-b", scene, "--command", "tessera", "mesh", "--edge-length", 0.2)
+    blender("-b", "--factory-startup", "--python", HERE / "make_scene.py", "--", scene, 12)
+    command = ("-b", scene, "--command", "tessera", "mesh", "--edge-length", 0.3)
     helped = (*command, "--output", tmp_path / "out.obj", "--jobs", 2)
     journal = tmp_path / ".tessera" / "out.obj"
     killed = blender(*helped, until=lambda: sum(p.read_text().count("\n") for p in journal.glob("*.jsonl")) >= 3)
@@ -186,14 +186,14 @@ def test_two_processes_on_one_file_are_killed_and_taken_up_again(blender, tmp_pa
     ran = blender(*helped, "--resume", "--report", report)
     assert ran.returncode == 0, ran.stdout + ran.stderr
     records = json.loads(report.read_text())["curves"]
-    assert len(records) == 16 and sum(record["earlier"] for record in records) == done
+    assert len(records) == 12 and sum(record["earlier"] for record in records) == done
     assert blender(*command, "--output", alone).returncode == 0
     assert (tmp_path / "out.obj").read_text().replace("out.mtl", "alone.mtl") == alone.read_text()
 
 
 def test_a_process_that_ends_is_replaced_and_its_curve_is_said_to_have_failed(blender, tmp_path):
     scene, report = tmp_path / "scene.blend", tmp_path / "report.json"
-    blender("-b", "--factory-startup", "--python", HERE / "make_scene.py", "--", scene, 16)
+    blender("-b", "--factory-startup", "--python", HERE / "make_scene.py", "--", scene, 12)
     journal = tmp_path / ".tessera" / "out.stl"
     words = ("mesh", "--edge-length", 0.1, "--output", tmp_path / "out.stl", "--jobs", 2, "--report", report)
     ended = []
@@ -212,4 +212,4 @@ def test_a_process_that_ends_is_replaced_and_its_curve_is_said_to_have_failed(bl
     failed = [record["reason"] for record in records if record["status"] == "failed"]
     assert failed in (["process"], []), failed  # none, if it was between two curves
     assert ran.returncode == len(failed) and (tmp_path / "out.stl").exists()
-    assert sum(record["status"] == "meshed" for record in records) == 16 - len(failed)
+    assert sum(record["status"] == "meshed" for record in records) == 12 - len(failed)

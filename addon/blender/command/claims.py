@@ -15,6 +15,10 @@ from pathlib import Path
 PATIENCE = 60.0
 
 
+class RunIsOver(Exception):
+    """The leading process has ended, or a later run has begun."""
+
+
 @dataclass(frozen=True)
 class Claims:
     """run: the name of this run; folder: where claims are, or None where one process does everything."""
@@ -23,15 +27,15 @@ class Claims:
     folder: Path | None = None
 
     def claim(self, job: int, curve: int | None = None) -> bool:
-        """Whether this process is the first to take a job, or a curve of it. Raises SystemExit when the run is over."""
+        """Whether this process is the first to take a job, or a curve of it. Raises RunIsOver."""
         if not self._led():
-            raise SystemExit(3)
+            raise RunIsOver
         try:
             os.close(os.open(self._path(job, curve), os.O_CREAT | os.O_EXCL))
         except FileExistsError:
             return False
         except FileNotFoundError:
-            raise SystemExit(3) from None
+            raise RunIsOver from None
         return True
 
     def is_claimed(self, job: int, curve: int | None = None) -> bool:

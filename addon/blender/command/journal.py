@@ -89,7 +89,8 @@ def write_done(target: Path, key: str, run: str, records: list[dict]) -> None:
 
 
 def read_done(target: Path, key: str, run: str) -> list[dict] | None:
-    """The records of a file that is done: in this run, or in an earlier one without a failure. Else None."""
+    """The records of a file that is done: in this run, or in an earlier one without a failure, and they say so. Else
+    None."""
     path = folder_of(target) / "done.json"
     if not path.exists():
         return None
@@ -97,7 +98,9 @@ def read_done(target: Path, key: str, run: str) -> list[dict] | None:
     if done["run"] == run:
         return done["records"]
     failed = any(record["status"] == "failed" for record in done["records"])
-    return None if failed or done["key"] != key or not target.exists() else done["records"]
+    if failed or done["key"] != key or not target.exists():
+        return None
+    return [record | {"earlier": True} for record in done["records"]]
 
 
 def drop_arrays(target: Path) -> None:

@@ -11,7 +11,7 @@ import bpy
 
 from . import console
 from .arguments import Request, UsageError, parse
-from .claims import Claims
+from .claims import Claims, RunIsOver
 from .inputs import InputError, choose
 from .journal import folder_of, forget
 from .records import Record, exit_status, failed, summary, write_report
@@ -51,9 +51,13 @@ def _check(request: Request) -> None:
 
 
 def _help(request: Request) -> int:
+    """Be one of several processes."""
     from . import workers
 
-    workers.work(request)
+    try:
+        workers.work(request)
+    except RunIsOver:
+        return 3
     return 0
 
 
@@ -88,8 +92,10 @@ def _prepare(request: Request) -> Claims:
     request.jobs[0].target.parent.mkdir(exist_ok=True)
     run = f"{time.time_ns():x}-{os.getpid():x}"
     first = folder_of(request.jobs[0].target)
-    for old in first.glob("run-*"):
+    for old in first.glob("run-*/"):  # folders
         shutil.rmtree(old, ignore_errors=True)
+    for old in first.glob("*.log"):
+        old.unlink()
     if not request.resume:
         for job in request.jobs:
             forget(job.target)
