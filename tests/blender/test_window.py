@@ -55,6 +55,7 @@ def test_what_search_finds_meshes_at_the_first_click(walk):
     (n_triangles,) = happened["searched"].values()
     assert 300 < n_triangles < 5000 and happened["operator"] == "TESSERA_OT_mesh_curve"
     assert 0.01 < happened["length shown"] < 0.1
+    assert happened["preferred"] == 2  # of the preferences
 
 
 def test_undo_is_one_step_and_a_changed_length_meshes_again(walk):
