@@ -70,7 +70,7 @@ def test_long_work_shows_its_progress_and_esc_cancels_it(walk):
     assert happened["started"] == ["RUNNING_MODAL"]
     assert happened["cancelled"] == [{}, True]
     # The status bar is the lowest line, and empty at its left but for the progress.
-    bar, before = (seen(folder, name)[-22:-2, :300].mean(axis=2) for name in ("progress", "search"))
+    bar, before = (seen(folder, name)[-22:-2, :300].mean(axis=2) for name in ("progress", "quality"))
     assert np.ptp(bar) > 0.3 > np.ptp(before)
 
 
