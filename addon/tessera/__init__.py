@@ -9,7 +9,7 @@ True
 from .allocation import keep_freed_memory
 from .errors import ContourError
 from .mesh import Mesh, Report
-from .meshing import mesh, mesh_contour, mesh_in_steps, mesh_many
+from .meshing import mesh, mesh_contour, mesh_in_steps, mesh_many, mesh_regions
 from .quality import element_quality
 from .runtime import RuntimeProblem
 from .sizing import by_curvature, by_distance, by_thickness, from_values, smallest
@@ -30,6 +30,7 @@ __all__ = [
     "mesh_contour",
     "mesh_in_steps",
     "mesh_many",
+    "mesh_regions",
     "smallest",
 ]
 

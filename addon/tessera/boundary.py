@@ -49,11 +49,12 @@ def resample_loops(
     # One loop after the other: running sums must not depend on what else is in the batch.
     ends = np.cumsum(length)[:-1]
     if callable(edge_length):
-        knots = _knots(points, length, group, edge_length)
+        knots = knots_of(points, points[neighbours(length)[1]], length, group, edge_length)
     else:
         edge_length = np.broadcast_to(np.asarray(edge_length, dtype=np.float64), len(loops))
-        knots = [_vertices_as_knots(*one) for one in zip(np.split(points, ends), edge_length, strict=True)]
-    positions = [_resampled(*one) for one in zip(np.split(breaks, ends), *zip(*knots, strict=True), strict=True)]
+        closed = (np.concatenate([part, part[:1]]) for part in np.split(points, ends))
+        knots = [vertices_as_knots(*one) for one in zip(closed, edge_length, strict=True)]
+    positions = [resampled_places(*one) for one in zip(np.split(breaks, ends), *zip(*knots, strict=True), strict=True)]
     loop, position = np.repeat(np.arange(len(loops)), [len(p) for p in positions]), np.concatenate(positions)
     samples, loop, _ = until_simple(points, length, loop, position, group)
     return np.split(samples, np.cumsum(np.bincount(loop))[:-1])
@@ -105,21 +106,25 @@ def turning_angles(points: np.ndarray, before: np.ndarray, after: np.ndarray) ->
     return np.arctan2(came[:, 0] * goes[:, 1] - came[:, 1] * goes[:, 0], np.sum(came * goes, axis=1))
 
 
-def _vertices_as_knots(points: np.ndarray, edge_length: float) -> tuple[np.ndarray, np.ndarray, float]:
-    """Positions along a loop (k + 1,), the last where it closes, length up to each (k + 1,), that of an edge."""
-    length = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
-    return np.arange(len(points) + 1.0), np.concatenate([[0.0], np.cumsum(length)]), edge_length
+def vertices_as_knots(points: np.ndarray, edge_length: float) -> tuple[np.ndarray, np.ndarray, float]:
+    """Positions along a polyline (k + 1, 2), its vertices' numbers; length up to each (k + 1,); that of an edge."""
+    length = np.linalg.norm(points[1:] - points[:-1], axis=1)
+    return np.arange(len(points) + 0.0), np.concatenate([[0.0], np.cumsum(length)]), edge_length
 
 
-def _knots(points, length, group, wanted: Callable) -> list[tuple[np.ndarray, np.ndarray, float]]:
-    """`_vertices_as_knots` of all loops for a function of points and domains: the integral of 1 / wanted along them."""
-    _, after = neighbours(length)
-    start, end = points, points[after]
+def knots_of(
+    start: np.ndarray, end: np.ndarray, length: np.ndarray, group: np.ndarray, wanted: Callable
+) -> list[tuple[np.ndarray, np.ndarray, float]]:
+    """`vertices_as_knots` for a function of points and domains: the integral of 1 / wanted along polylines.
+
+    start, end: (n, 2) of all edges, length (m,) of which each polyline has; group: (m,) its domain.
+    """
     first = np.cumsum(length) - length
     loop = np.repeat(np.arange(len(length)), length)
-    position = np.arange(len(points)) - first[loop] + 0.0
-    size = np.maximum.reduceat(np.abs(points - points[first][loop]).max(axis=1), first)
-    share = np.ones(len(points))
+    position = np.arange(len(start)) - first[loop] + 0.0
+    away = np.maximum(*(np.abs(ends - start[first][loop]).max(axis=1) for ends in (start, end)))
+    size = np.maximum.reduceat(away, first)
+    share = np.ones(len(start))
     parts = np.ceil(np.linalg.norm(end - start, axis=1) / (_LONGEST_PIECE * size[loop]))
     found = []
     while len(start):
@@ -144,10 +149,10 @@ def _knots(points, length, group, wanted: Callable) -> list[tuple[np.ndarray, np
     ]
 
 
-def count_edges(passed: np.ndarray) -> np.ndarray:
-    """How many edges each arc of a loop comes to (a,), at least 3 together; passed: (a,) wanted edges it is long."""
+def count_edges(passed: np.ndarray, fewest: int = 3) -> np.ndarray:
+    """How many edges each arc comes to (a,), at least so many together; passed: (a,) wanted edges it is long."""
     n_edges = np.maximum(np.rint(passed * (1 - _TIE)), 1).astype(np.int64)
-    n_edges[np.argmax(passed)] += max(3 - n_edges.sum(), 0)
+    n_edges[np.argmax(passed)] += max(fewest - n_edges.sum(), 0)
     return n_edges
 
 
@@ -159,10 +164,10 @@ def halvable(n_edges: np.ndarray) -> np.ndarray:
 
 
 def even_spacing(arc_start: np.ndarray, position: np.ndarray, passed: np.ndarray, n_edges: np.ndarray) -> np.ndarray:
-    """Places (n,) of one loop's new vertices: the number of the edge they lie on plus the share of it before them.
+    """Places (n,) of a polyline's new vertices: the number of the edge they lie on plus the share of it before them.
 
-    arc_start: (a,) vertices that stay, of which the first is one; n_edges: (a,) from each to the next; position,
-    passed: as of `_vertices_as_knots`.
+    arc_start: (a,) which vertices but the last stay, the first among them; n_edges: (a,) from each to the next;
+    position, passed: as of `vertices_as_knots`.
     """
     knot = np.searchsorted(position, arc_start)
     arc_length = np.diff(passed[knot], append=passed[-1])
@@ -177,11 +182,17 @@ def even_spacing(arc_start: np.ndarray, position: np.ndarray, passed: np.ndarray
     return np.minimum(places, np.nextafter(position[-1], 0))
 
 
-def _resampled(breaks: np.ndarray, position: np.ndarray, passed: np.ndarray, an_edge: float) -> np.ndarray:
-    """`even_spacing` at the target edge length; breaks: (k,) bool, which of a loop's vertices stay."""
+def resampled_places(
+    breaks: np.ndarray, position: np.ndarray, passed: np.ndarray, an_edge: float, fewest: int = 3
+) -> np.ndarray:
+    """`even_spacing` at the target edge length.
+
+    breaks: (k,) bool, which vertices but the last stay, the first among them; position, passed, an_edge: as of
+    `vertices_as_knots`; fewest: edges that there are at least.
+    """
     arc_start = np.flatnonzero(breaks)
     arcs = np.diff(passed[np.searchsorted(position, arc_start)], append=passed[-1])
-    return even_spacing(arc_start, position, passed, halvable(count_edges(arcs / an_edge)))
+    return even_spacing(arc_start, position, passed, halvable(count_edges(arcs / an_edge, fewest)))
 
 
 def _points_at(points: np.ndarray, length: np.ndarray, loop: np.ndarray, position: np.ndarray) -> np.ndarray:

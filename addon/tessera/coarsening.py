@@ -7,13 +7,14 @@ domain: several fit across its thin parts, and a round boundary keeps its shape.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .boundary import count_edges, even_spacing, turning_angles, until_simple
 from .cones import Cones, Places, build_cones, join_places, lowest
 from .contour import edges_of, neighbours
+from .finer import Arcs
 from .gradation import Target
 from .thickness import thin_parts
 
@@ -42,13 +43,19 @@ class Coarsening:
     target: Target
     room: Cones | None
 
-    @property
-    def top(self) -> int:
-        """The coarsest level of all."""
-        return int(self.levels.max(initial=0))
+    def of_loops(self, rows: np.ndarray) -> Coarsening:
+        """That of some loops alone, by their numbers."""
+        chosen = np.isin(np.repeat(np.arange(len(self.size)), self.size), rows)
+        return replace(self, points=self.points[chosen], size=self.size[rows], level=self.level[chosen])
+
+    def arcs(self, level: int, number: np.ndarray) -> Arcs:
+        """What the boundary edges of the next coarser level's mesh come to; number: (v,) as of `Arcs`."""
+        return Arcs(self.points, self.size, self.level >= level + 1, self.level >= level, number)
 
     def loops(self, level: int) -> list[np.ndarray]:
         """The boundaries of a level, (k, 2) each."""
+        if not len(self.size):
+            return []
         kept = self.level >= level
         count = np.add.reduceat(kept, np.cumsum(self.size) - self.size)
         return np.split(self.points[kept], np.cumsum(count)[:-1])
@@ -87,7 +94,7 @@ def coarsen(
     chosen = np.flatnonzero(levels[domain] > 0)
     size = np.array([len(loop) for loop in loops])
     level = np.zeros(size.sum(), dtype=np.int64)
-    points = np.concatenate(loops)
+    points = np.concatenate([np.zeros((0, 2)), *loops])
     coarsening = Coarsening(points, size, level, levels, target, build_cones(join_places(places)) if places else None)
     if len(chosen):
         rows = np.flatnonzero(np.isin(np.repeat(np.arange(len(loops)), size), chosen))

@@ -8,17 +8,23 @@ from __future__ import annotations
 
 import numpy as np
 
+from .edges import among
 from .scheme import LARGEST_CONTOUR
 
 
 def find_patches(
-    triangles: np.ndarray, quality: np.ndarray, free: np.ndarray, tried: tuple[np.ndarray, np.ndarray], poor: float
+    triangles: np.ndarray,
+    quality: np.ndarray,
+    free: np.ndarray,
+    tried: tuple[np.ndarray, np.ndarray],
+    poor: float,
+    fixed: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The contours of patches (c, N), padded with -1; the patch that each element is in or -1 (m,); their kinds (c,).
 
     triangles: (m, 3); quality: (m,); free: (n,) which vertices are off the boundary; tried: for patches around elements
     and around vertices, the vertices (n,) that have seen one, and no change since; poor: the quality below which an
-    element is worth a patch. The poorest come first.
+    element is worth a patch; fixed: (f, 2) edges that no patch has inside. The poorest come first.
     """
     found = _around_elements(triangles, quality, free, poor), _around_vertices(triangles, quality, free, poor)
     kind = np.repeat([0, 1], [len(worst) for worst, _, _ in found])
@@ -29,6 +35,8 @@ def find_patches(
     vertex = np.concatenate([found[0][2], found[1][2]])
     fresh = np.where(kind[candidate] == 0, ~tried[0][vertex], ~tried[1][vertex])
     patch = _patches(triangles, rank[candidate], vertex, fresh, len(kind), len(free))
+    if fixed is not None:
+        patch[np.isin(patch, _swallowing(triangles, patch, fixed))] = -1
     contours, anew, first = _contours_of(triangles, patch)
     return contours, anew, kind[order][first]
 
@@ -79,6 +87,20 @@ def _patches(
     spoiled[rank[rank_at[vertex] != rank]] = True
     spoiled[-1] = True
     return np.where(spoiled[best], -1, best)
+
+
+def _swallowing(triangles: np.ndarray, patch: np.ndarray, fixed: np.ndarray) -> np.ndarray:
+    """The patches that have a fixed edge between two of their elements, or one of its vertices amid them."""
+    inside = np.flatnonzero(patch >= 0)
+    start, end = triangles[inside].ravel(), np.roll(triangles[inside], -1, axis=1).ravel()
+    label = np.repeat(patch[inside], 3)
+    stride = int(triangles.max(initial=0)) + 1
+    here, back = ((label * stride + a) * stride + b for a, b in ((start, end), (end, start)))
+    within = np.isin(here, back)
+    edges = label[within & among(np.column_stack([start, end]), fixed)]
+    at = label * stride + start
+    on_outline = np.isin(at, np.concatenate([at[~within], (label * stride + end)[~within]]))
+    return np.unique(np.concatenate([edges, label[~on_outline & np.isin(start, fixed)]]))
 
 
 def _contours_of(triangles: np.ndarray, patch: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

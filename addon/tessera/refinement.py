@@ -13,12 +13,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .arcs import Arcs
 from .assembly import mean_edge_lengths, mesh_cells
 from .cavity import areas
 from .contour import neighbours
 from .crossings import crossing_pairs
-from .edges import inner_edges, off_boundary, sides
+from .edges import among, inner_edges, off_boundary, sides
+from .finer import Arcs
 from .quality import element_quality
 from .relaxation import relax
 from .steps import Steps, within
@@ -59,11 +59,12 @@ def refine(
     sizing: Sizing,
     watch: Stopwatch,
     arcs: Arcs | None = None,
+    fixed: np.ndarray | None = None,
 ) -> Steps[Refined]:
     """Refine a mesh until its inner edges follow the sizing function, and its boundary the arcs, if there are any.
 
     vertices: (n, 2); triangles: (m, 3); domain: (m,) int of each triangle; sizing: (k, 2) points and the domains (k,)
-    that they are in -> (k,) wanted edge lengths.
+    that they are in -> (k,) wanted edge lengths; fixed: (f, 2) edges that stay, as the boundary does without arcs.
     """
     parent = np.arange(len(triangles))
     fallbacks = np.zeros(len(triangles), dtype=np.int64)
@@ -75,14 +76,14 @@ def refine(
         home = np.zeros(len(vertices), dtype=np.int64)
         home[triangles] = domain[parent][:, None]
         home = home[edges[:, 0]]
-        may_split = inner & ~_beside_slivers(vertices, triangles, edges) & ~np.isin(home, failed)
+        may_split = inner & ~_beside_slivers(vertices, triangles, edges) & ~np.isin(home, failed) & ~among(edges, fixed)
         with watch("sizing"):
             segments, wanted = _segments(vertices[edges], may_split, home, sizing)
         if turn and segments.max(initial=1) > 1:
             # Again, once the vertices have better places; only in domains that are not done, as if each were alone.
             unfinished = np.isin(home, home[segments > 1])
             rows = np.isin(domain[parent], home[unfinished])
-            free = off_boundary(triangles, len(vertices))
+            free = off_boundary(triangles, len(vertices), fixed)
             relaxation = relax(vertices, triangles[rows], domain[parent[rows]], free, 1, watch)
             vertices = yield from within(relaxation, start, start)
             with watch("sizing"):

@@ -28,21 +28,26 @@ _RELAXED = 0.3  # share of the work that is done after the first relaxation
 
 
 def improve(
-    vertices: np.ndarray, triangles: np.ndarray, domain: np.ndarray, passes: int, watch: Stopwatch
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    domain: np.ndarray,
+    passes: int,
+    watch: Stopwatch,
+    fixed: np.ndarray | None = None,
 ) -> Steps[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
     """Relax a mesh, then mesh its poor patches again and relax, a few times.
 
     vertices: (n, 2); triangles: (m, 3); domain: (m,) int from 0: each domain is treated as it would be alone;
-    passes: of relaxation. Returns
+    passes: of relaxation; fixed: (f, 2) edges that stay, as the boundary does. Returns
     the same of the better mesh, where vertices that it has no use for stay, and the fallbacks of each domain.
     """
     fallbacks = np.zeros(int(domain.max()) + 1, dtype=np.int64)
-    free = off_boundary(triangles, len(vertices))
+    free = off_boundary(triangles, len(vertices), fixed)
     vertices = yield from within(relax(vertices, triangles, domain, free, passes, watch), 0.0, _RELAXED)
     tried = np.zeros(len(vertices), dtype=bool), np.zeros(len(vertices), dtype=bool)
     for turn in range(TURNS):
         quality = element_quality(vertices, triangles)
-        contours, patch, kind = find_patches(triangles, quality, free, tried, POOR)
+        contours, patch, kind = find_patches(triangles, quality, free, tried, POOR, fixed)
         if not len(contours):
             break
         for number in (0, 1):

@@ -36,19 +36,24 @@ def smooth(vertices: np.ndarray, triangles: np.ndarray, steps: int) -> np.ndarra
 
 
 def smooth_in_steps(
-    vertices: np.ndarray, triangles: np.ndarray, steps: int, domain: np.ndarray, watch: Stopwatch
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    steps: int,
+    domain: np.ndarray,
+    watch: Stopwatch,
+    fixed: np.ndarray | None = None,
 ) -> Steps[np.ndarray]:
     """Better places for the vertices of meshes that are off the boundary, (n, 2); the others stay.
 
     vertices: (n, 2) float64; triangles: (m, 3) int, counter-clockwise; steps: how often every vertex may move, but for
     those with more than 32 neighbours; domain: (m,) int, of a batch: what is done to one domain's mesh does not depend
-    on the others. Raises ValueError as `checked_steps`.
+    on the others; fixed: (f, 2) edges whose vertices stay too. Raises ValueError as `checked_steps`.
     """
     steps, vertices = checked_steps(steps), np.array(vertices, dtype=np.float64)
     if not (steps and len(triangles)):
         return vertices
     with watch("smoothing"):
-        free = off_boundary(triangles, len(vertices))
+        free = off_boundary(triangles, len(vertices), fixed)
         sets = find_independent_stars(triangles, domain, free, _LARGEST_STAR)
     for step in range(steps):
         with watch("smoothing"):
