@@ -67,11 +67,16 @@ def _export(path: Path) -> None:
 
 def _select(made: list[bpy.types.Object]) -> None:
     """Select what was made and nothing else."""
+    wanted = set(made)
     for obj in bpy.context.view_layer.objects:
-        obj.select_set(False)
+        # Only what has to be set: each setting makes Blender look through the whole scene.
+        for hiding in ("hide_select", "hide_viewport"):
+            if obj in wanted and getattr(obj, hiding):
+                setattr(obj, hiding, False)
+        if obj in wanted and obj.hide_get():
+            obj.hide_set(False)
+        if obj.select_get() != (obj in wanted):
+            obj.select_set(obj in wanted)
     for obj in made:
-        obj.hide_select = obj.hide_viewport = False
-        obj.hide_set(False)
-        obj.select_set(True)
         if not obj.select_get():
             raise OSError(f"'{obj.name}' is in a collection that is switched off, and cannot be exported")
