@@ -91,7 +91,7 @@ def mesh_task(task: Task) -> Steps[Meshed]:
             _check_rounding(outline, made)
         except tessera.ContourError as error:
             raise Failure(task.obj, error, outline) from error
-        pieces.append(Piece(outline, made.vertices, made.triangles, getattr(made, "region", None)))
+        pieces.append(Piece(outline, made.vertices, made.triangles, made.region))
         reports.append(made.report)
     return Meshed(task, edge_length, tuple(pieces), tuple(reports))
 
