@@ -16,6 +16,8 @@ from .linked import fingerprint, is_linked, linked_settings, source_is_there
 
 # Meshes that took longer than this many seconds wait until their source has not changed for as long as _REST.
 _QUICK, _REST = 0.2, 0.4
+# A window that stands still for more seconds than this is no help: such meshes follow no longer by themselves.
+_TOO_LONG = 3.0
 
 _wanted: set[str] = set()  # names of meshes that may be out of date
 _slowest = 0.0  # seconds of the last time
@@ -47,10 +49,20 @@ def _catch_up() -> None:
         for name in names:
             obj = bpy.data.objects.get(name)
             if is_linked(obj) and obj.tessera.automatic:
+                since = time.perf_counter()
                 mesh_again(obj)
+                if not bpy.app.background:
+                    stop_if_slow(obj, time.perf_counter() - since)
     finally:
         _at_work = False
         _slowest = time.perf_counter() - started
+
+
+def stop_if_slow(obj: bpy.types.Object, seconds: float) -> None:
+    """Let a mesh that took too long follow no longer, and say so at it."""
+    if seconds > _TOO_LONG:
+        obj.tessera.automatic = False
+        obj.tessera.message = f"Meshing took {seconds:.0f} s, so Follow Changes was switched off: use Mesh Again"
 
 
 def mesh_again(obj: bpy.types.Object) -> bool:

@@ -145,6 +145,15 @@ def test_what_a_sizing_refers_to_is_followed_too(square):
     assert len(mesh.data.polygons) > 1.3 * many
 
 
+def test_a_mesh_that_takes_too_long_follows_no_longer(square):
+    _, mesh = square
+    mesh.tessera.automatic = True
+    following.stop_if_slow(mesh, 0.3)
+    assert mesh.tessera.automatic and not mesh.tessera.message
+    following.stop_if_slow(mesh, 12.0)
+    assert not mesh.tessera.automatic and "took 12 s" in mesh.tessera.message
+
+
 def test_the_link_is_kept_in_the_file(square, tmp_path):
     square[1].tessera.automatic = True
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "linked.blend"))
