@@ -8,6 +8,7 @@ from addon.blender import notes
 from addon.blender.settings import Settings
 from addon.tessera.quality import element_quality
 from tests.blender.drawing import SQUARE, circle, poly_curve, select, star, triangles, vertices
+from tests.blender.sources import grease_pencil
 
 BOW_TIE = ((0, 0), (1, 1), (1, 0), (0, 1))
 
@@ -125,20 +126,23 @@ def stroke(*points):
     return mesh
 
 
-@pytest.mark.parametrize("kind", ["empty", "mesh"])
+@pytest.mark.parametrize("kind", ["empty", "mesh", "strokes"])
 def test_triangles_are_smaller_near_an_object(kind):
-    poly_curve(SQUARE)
-    data = None if kind == "empty" else stroke((0, 0), (0, 0.8))
-    near = bpy.data.objects.new("Near", data)
+    curve = poly_curve(SQUARE)
+    if kind == "strokes":
+        near = grease_pencil(np.column_stack([np.zeros(9), np.linspace(0, 0.8, 9), np.zeros(9)]), cyclic=False)
+        near.name = "Near"
+    else:
+        near = bpy.data.objects.new("Near", None if kind == "empty" else stroke((0, 0), (0, 0.8)))
+        bpy.context.scene.collection.objects.link(near)
     near.location = (0.2, 0.1, 2.0)
-    bpy.context.scene.collection.objects.link(near)
-    bpy.context.view_layer.update()
+    select(curve)
     (made,) = run(edge_length=0.2, use_object=True, object_name="Near", object_length=0.02)
     around = lengths_at(made, lambda c: np.linalg.norm(c[:, :2] - (0.2, 0.1), axis=1) < 0.05)
     along = lengths_at(made, lambda c: np.linalg.norm(c[:, :2] - (0.2, 0.6), axis=1) < 0.1)
     far = lengths_at(made, lambda c: c[:, 0] > 0.8)
     assert around < 0.035 and far > 0.1
-    assert (along < 0.04) == (kind == "mesh")
+    assert (along < 0.04) == (kind != "empty")
 
 
 def test_triangles_are_smaller_where_control_points_weigh_more():
@@ -148,6 +152,23 @@ def test_triangles_are_smaller_where_control_points_weigh_more():
     (made,) = run(edge_length=0.2, use_weight=True, weight_name="weight", weight_length=0.03)
     assert lengths_at(made, lambda c: c[:, 1] > 0.95) < 0.05
     assert lengths_at(made, lambda c: c[:, 1] < 0.1) > 0.1
+
+
+def test_triangles_are_smaller_where_a_vertex_group_of_a_mesh_is_painted():
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=10, y_subdivisions=10, size=2)
+    flat = bpy.context.object
+    group = flat.vertex_groups.new(name="Fine")
+    group.add([vertex.index for vertex in flat.data.vertices if vertex.co.x > 0.5], 1.0, "REPLACE")
+    settings = {"edge_length": 0.4, "use_weight": True, "weight_name": "Fine", "weight_length": 0.06}
+    (made,) = run(**settings)
+    assert lengths_at(made, lambda c: c[:, 0] > 0.7) < 0.09
+    assert lengths_at(made, lambda c: c[:, 0] < -0.5) > 0.2
+    select(flat)
+    bpy.ops.object.mode_set(mode="EDIT")
+    bpy.ops.mesh.select_all(action="SELECT")
+    assert bpy.ops.tessera.remesh_faces(**settings) == {"FINISHED"}
+    bpy.ops.object.mode_set(mode="OBJECT")
+    assert lengths_at(flat, lambda c: (c[:, 0] > 0.7) & (abs(c[:, 1]) < 0.8)) < 0.12
 
 
 def test_names_that_are_not_there_are_one_clear_report():
@@ -182,6 +203,12 @@ def test_results_in_place_and_joined():
         ("B", "MESH", True),
     ]
     assert bpy.context.view_layer.objects.active.name == "A"
+
+
+def test_warnings_name_the_object_also_where_it_is_replaced(capfd):
+    poly_curve(SQUARE, name="Coarse")
+    assert bpy.ops.tessera.mesh_curve(edge_length=0.1, boundary="KEEP", result="REPLACE") == {"FINISHED"}
+    assert "Coarse: 4 of the 4 kept boundary edges are longer" in capfd.readouterr().out
 
 
 def test_flat_faces_are_remeshed_in_edit_mode_and_the_rest_stays():

@@ -43,9 +43,7 @@ class Stepping:
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Mesh everything, and only then change the scene."""
         try:
-            from ...tessera.steps import finish  # here, so that enabling the add-on does not load the mesher
-
-            batch = finish(self.steps(context))
+            batch = _block(context, self.steps(context))
         except _REFUSALS as refusal:
             self.report({"ERROR"}, str(refusal))
             return {"CANCELLED"}
@@ -80,9 +78,12 @@ class Stepping:
             return {"RUNNING_MODAL"}
         try:
             outcome = advance(self._steps, _SLICE)
-        except BaseException:
+        except BaseException as error:
             self.cancel(context)
-            raise
+            if not isinstance(error, _REFUSALS):
+                raise
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
         if isinstance(outcome, Done):
             self.cancel(context)
             return self._end(context, outcome.result, in_window=True)
@@ -110,8 +111,8 @@ class Stepping:
             for failure in batch.failures:
                 self.report({"WARNING" if in_window else "ERROR"}, str(failure))
             return {"CANCELLED"}
+        self._summarise(batch)  # before the sources are replaced
         self.write(context, batch)
-        self._summarise(batch)
         return {"FINISHED"}
 
     def _summarise(self, batch: Batch) -> None:
@@ -128,6 +129,22 @@ class Stepping:
             names = ", ".join(f"'{failure.obj}'" for failure in batch.failures)
             self.report({"WARNING"}, f"{len(batch.failures)} of {total} objects were not meshed: {names}")
         self.report({"INFO"}, f"{triangles} triangles, quality {mean:.3f} on average, {worst:.3f} at worst")
+
+
+def _block(context: bpy.types.Context, steps: Steps[Batch]) -> Batch:
+    """Take all steps, for scripts and for Adjust Last Operation; what takes long shows its progress at the cursor."""
+    outcome = advance(steps, PATIENCE)
+    if isinstance(outcome, Done):
+        return outcome.result
+    manager = context.window_manager
+    manager.progress_begin(0, 100)
+    try:
+        while not isinstance(outcome, Done):
+            manager.progress_update(int(100 * outcome.share))
+            outcome = advance(steps, PATIENCE)
+    finally:
+        manager.progress_end()
+    return outcome.result
 
 
 def _pop_up(context: bpy.types.Context) -> None:
