@@ -92,7 +92,7 @@ def coarsen(
             levels[number] = found[1]
             places.append(found[0])
     chosen = np.flatnonzero(levels[domain] > 0)
-    size = np.array([len(loop) for loop in loops])
+    size = np.array([len(loop) for loop in loops], dtype=np.int64)
     level = np.zeros(size.sum(), dtype=np.int64)
     points = np.concatenate([np.zeros((0, 2)), *loops])
     coarsening = Coarsening(points, size, level, levels, target, build_cones(join_places(places)) if places else None)
@@ -140,7 +140,7 @@ def _places(start: np.ndarray, end: np.ndarray, value: np.ndarray, number: int) 
 
 def _levels_of(loops: list[np.ndarray], domain: np.ndarray, coarsening: Coarsening, corner_angle: float) -> np.ndarray:
     """The coarsest level (n,) that has each of the loops' vertices."""
-    size = np.array([len(loop) for loop in loops])
+    size = np.array([len(loop) for loop in loops], dtype=np.int64)
     points = np.concatenate(loops)
     before, after = neighbours(size)
     corner = np.abs(turning_angles(points, before, after)) > corner_angle
