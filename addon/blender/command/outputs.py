@@ -67,6 +67,7 @@ def _export(path: Path) -> None:
 
 def _select(made: list[bpy.types.Object]) -> None:
     """Select what was made and nothing else."""
+    bpy.context.view_layer.update()  # before that, it does not list all new objects
     wanted = set(made)
     for obj in bpy.context.view_layer.objects:
         # Only what has to be set: each setting makes Blender look through the whole scene.
