@@ -49,10 +49,10 @@ evaluate: $(VENV)/.develop
 	$(PY) -m training.evaluate
 
 wheels: $(VENV)/.runtime
-	$(PY) scripts/fetch_wheels.py
+	$(PY) -m scripts.fetch_wheels
 
 extension: wheels
-	$(PY) scripts/build_extension.py
+	$(PY) -m scripts.build_extension
 
 clean:
 	rm -rf build wheels

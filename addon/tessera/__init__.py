@@ -11,6 +11,7 @@ from .errors import ContourError
 from .mesh import Mesh, Report
 from .meshing import mesh, mesh_contour, mesh_in_steps, mesh_many, mesh_regions
 from .quality import element_quality
+from .runtime import RuntimeProblem
 from .sizing import by_curvature, by_distance, by_thickness, from_values, smallest
 from .steps import Progress
 
@@ -19,6 +20,7 @@ __all__ = [
     "Mesh",
     "Progress",
     "Report",
+    "RuntimeProblem",
     "by_curvature",
     "by_distance",
     "by_thickness",

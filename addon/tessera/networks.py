@@ -8,11 +8,17 @@ on its neighbours in the batch, so that a contour's answer is the same in every 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import onnxruntime
+
+from .runtime import open_session
+
+if TYPE_CHECKING:
+    import onnxruntime
 
 FOLDER = Path(__file__).resolve().parents[2] / "onnx_models"
 
@@ -26,15 +32,36 @@ _KNOWN_TARGETS = 0.25, 20.0  # scaled target edge lengths that NN1 is asked abou
 _CALL_SIZE = 1 << 12
 
 
+@dataclass(frozen=True)
+class Execution:
+    """How onnxruntime runs the networks: with how many threads, and on what of its providers, if it has that."""
+
+    threads: int = 1
+    provider: str = "CPUExecutionProvider"
+
+
+_execution = Execution()
+
+
+def use(execution: Execution) -> None:
+    """Run the networks like this from now on.
+
+    Another provider than the CPU's, or another number of threads, may add up in another order: the last bits of what
+    the networks say, and so now and then an element, may differ.
+    """
+    global _execution
+    if execution != _execution:
+        _execution = execution
+        session.cache_clear()
+
+
 @cache
 def session(role: str) -> onnxruntime.InferenceSession:
-    """The session of ``nn1``, ``nn2_scores``, ``nn2_moves``, ``nn2_star`` or ``nn3``; opened once."""
-    options = onnxruntime.SessionOptions()
-    options.log_severity_level = 3
-    options.intra_op_num_threads = 1
-    # Threads that wait by spinning slow everything else down, and calls here are many and short.
-    options.add_session_config_entry("session.intra_op.allow_spinning", "0")
-    return onnxruntime.InferenceSession(FOLDER / f"{role}.onnx", options, providers=["CPUExecutionProvider"])
+    """The session of ``nn1``, ``nn2_scores``, ``nn2_moves``, ``nn2_star`` or ``nn3``; opened once.
+
+    Raises RuntimeProblem.
+    """
+    return open_session(FOLDER / f"{role}.onnx", _execution.threads, _execution.provider)
 
 
 def count_inner_vertices(contour: np.ndarray, n_contour: np.ndarray, l_s: np.ndarray) -> np.ndarray:
