@@ -40,8 +40,9 @@ def resample_loops(
 
     The vertices lie on the given polyline. Corners (turning by more than the corner angle) stay; between two of them
     are as many edges as come near `edge_length`, a number that is easily halved if there are many, equally long along
-    the polyline, or as long as it is there. A loop without corners starts at its leftmost vertex, wherever its list starts. Where such spacing would make polygons
-    meet, or put one inside another or out of it that was not, given vertices are inserted until it does not.
+    the polyline, or as long as it is there. A loop without corners starts at its leftmost vertex, wherever its list
+    starts. Where such spacing would make polygons meet, or put one inside another or out of it that was not, given
+    vertices are inserted until it does not.
     """
     length = np.array([len(loop) for loop in loops])
     group = np.arange(len(loops)) if domain is None else np.asarray(domain)
