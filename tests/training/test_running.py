@@ -83,10 +83,13 @@ def test_repetitions_are_left_out():
     assert len(running._once(pool)) == 2
 
 
-def test_split_triangles_have_straight_angles(pool):
+def test_split_triangles_have_straight_angles_but_on_curved_boundaries(pool):
+    straight = []
     for row in np.flatnonzero(pool.kind == KINDS.index("triangle")):
         turn = bends(pool.contour[row, : pool.n_contour[row]])
-        assert 4 <= len(turn) <= 15 and np.count_nonzero(np.abs(turn) < 1e-6) == len(turn) - 3
+        assert 4 <= len(turn) <= 15 and np.count_nonzero(np.abs(turn) < 1e-6) <= len(turn) - 3
+        straight.append(np.count_nonzero(np.abs(turn) < 1e-6) == len(turn) - 3)
+    assert np.mean(straight) > 0.5
 
 
 def test_the_same_seed_makes_the_same_pool(pool):
