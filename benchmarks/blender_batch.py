@@ -129,7 +129,7 @@ if __name__ == "__main__":
     if sys.argv[1:2] == ["make"]:
         make(int(sys.argv[2]), Path(sys.argv[3]))
     elif sys.argv[1:2] == ["run"]:
-        sys.exit(run(Path(sys.argv[2]), Path(sys.argv[3]), sys.argv[4]))
+        os._exit(run(Path(sys.argv[2]), Path(sys.argv[3]), sys.argv[4]))  # the bpy module may hang at its end
     else:
         asked = sys.argv[1:]
         sys.exit(main(int(asked[0]) if asked else 10_000, float(asked[1]) if asked[1:] else EDGE_LENGTH))

@@ -1,5 +1,6 @@
 """Run by test_command_resume.py in a Python of its own, with the bpy module: the command on the file named first."""
 
+import os
 import sys
 
 import bpy
@@ -11,4 +12,5 @@ addon.blender.register()
 bpy.ops.wm.open_mainfile(filepath=sys.argv[1])
 status = command.run(sys.argv[2:])
 addon.blender.unregister()
-sys.exit(status)
+sys.stdout.flush()
+os._exit(status)  # the bpy module may hang at the end of a process
