@@ -1,8 +1,8 @@
 """Pools of the contours that the running system makes, for training, and of others like them, for evaluation.
 
 Four kinds go through the scheme or through relaxation: *cells* of the division, *triangles* that refinement gave up to
-five segments an edge (so with collinear vertices, or the boundary's), *cavities* that are meshed again, and *stars*, the rings around a
-vertex. The triangulation's recursion makes *sub-contours* of them, which only NN3 sees.
+five segments an edge (so with collinear vertices, or those of a curved boundary), *cavities* that are meshed again, and
+*stars*, the rings around a vertex. The triangulation's recursion makes *sub-contours* of them, which only NN3 sees.
 
 `python -m training.running 500` prints how many of each kind so many random domains make.
 """
