@@ -6,7 +6,8 @@ class ContourError(ValueError):
 
     `reason` is a short machine-readable word: "not-finite", "out-of-range" (sizes whose squares overflow or vanish),
     "too-few-points", "zero-area", "self-intersection", "crossing" (two loops cross or touch), "open", "not-planar",
-    "edge-length", "sizing" (a sizing that gives what is no length), "too-many-triangles", "too-many-edges".
+    "edge-length", "sizing" (a sizing that gives what is no length), "too-many-triangles", "too-many-edges",
+    "untrained-group" (the paper's own networks are asked for a contour that none was trained for).
     `place` is where it is, in the input's coordinates, or None where the cause has no single place.
     """
 

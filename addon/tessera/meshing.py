@@ -19,6 +19,7 @@ from .flips import flip_edges
 from .gradation import Target, prepare
 from .mesh import Mesh, make_mesh
 from .notices import long_edge_warnings, lost_area_warnings
+from .paper import roles_named
 from .placement import MOST_INNER
 from .refinement import refine
 from .remeshing import improve
@@ -86,10 +87,13 @@ def mesh_many(
     return mesh_domains(domains, edge_length, "resample", flips, smooth, *wanted)
 
 
-def mesh_contour(points: ArrayLike, edge_length: float, *, flips: bool = False, smooth: int = 0) -> Mesh:
+def mesh_contour(
+    points: ArrayLike, edge_length: float, *, flips: bool = False, smooth: int = 0, networks: str = "shipped"
+) -> Mesh:
     """Mesh one contour by the paper's scheme alone: 3 ≤ N_C ≤ 16, its vertices are the boundary, untouched.
 
-    points: (N_C, 2); flips, smooth: as in `mesh`. The mesh's first N_C vertices are the contour's, counter-clockwise.
+    points: (N_C, 2); flips, smooth: as in `mesh`; networks: "shipped", or "paper" and "paper*" for the paper's own, with
+    NN3 or NN3*, where they are there and trained for the contour (else ContourError "untrained-group"). The mesh's first N_C vertices are the contour's, counter-clockwise.
     Raises ContourError.
     """
     edge_length, smooth = checked_edge_length(edge_length), checked_steps(smooth)
@@ -103,7 +107,7 @@ def mesh_contour(points: ArrayLike, edge_length: float, *, flips: bool = False, 
         raise ContourError("too-many-edges", message)
     watch = Stopwatch()
     n_contour = np.array([n])
-    meshes = mesh_contours(contour[None], n_contour, np.array([edge_length]), watch, flips)
+    meshes = mesh_contours(contour[None], n_contour, np.array([edge_length]), watch, flips, roles_named(networks))
     (vertices,) = join_vertices(contour[None], n_contour, meshes.inner, meshes.n_inner)
     if smooth:
         with watch("smoothing"):

@@ -29,12 +29,17 @@ _CALL_SIZE = 1 << 12
 @cache
 def session(role: str) -> onnxruntime.InferenceSession:
     """The session of ``nn1``, ``nn2_scores``, ``nn2_moves`` or ``nn3``; opened once."""
+    return open_session(FOLDER / f"{role}.onnx")
+
+
+def open_session(file: Path) -> onnxruntime.InferenceSession:
+    """A network's file, to be asked on one thread."""
     options = onnxruntime.SessionOptions()
     options.log_severity_level = 3
     options.intra_op_num_threads = 1
     # Threads that wait by spinning slow everything else down, and calls here are many and short.
     options.add_session_config_entry("session.intra_op.allow_spinning", "0")
-    return onnxruntime.InferenceSession(FOLDER / f"{role}.onnx", options, providers=["CPUExecutionProvider"])
+    return onnxruntime.InferenceSession(file, options, providers=["CPUExecutionProvider"])
 
 
 def count_inner_vertices(contour: np.ndarray, n_contour: np.ndarray, l_s: np.ndarray) -> np.ndarray:

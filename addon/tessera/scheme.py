@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import networks
 from .flips import flip_edges
-from .placement import MOST_INNER, place_inner_vertices
+from .placement import MOST_INNER
+from .roles import SHIPPED, Roles
 from .stopwatch import Stopwatch
 from .transform import superimpose
 from .triangulation import triangulate
@@ -31,23 +31,29 @@ class ContourMeshes:
 
 
 def mesh_contours(
-    contours: np.ndarray, n_contour: np.ndarray, edge_length: np.ndarray, watch: Stopwatch, flips: bool = False
+    contours: np.ndarray,
+    n_contour: np.ndarray,
+    edge_length: np.ndarray,
+    watch: Stopwatch,
+    flips: bool = False,
+    roles: Roles = SHIPPED,
 ) -> ContourMeshes:
     """Mesh contours, each at its own target edge length.
 
     contours: (B, N, 2) float64, simple and counter-clockwise, n_contour (B,) vertices each, 3 to 16, then padding of
-    any value; edge_length: (B,); flips: whether `flips.flip_edges` passes over the meshes in the end. A large batch
-    goes through in pieces, so that memory grows by no more than the meshes.
+    any value; edge_length: (B,); flips: whether `flips.flip_edges` passes over the meshes in the end;
+    roles: the networks that are asked. A large batch goes through in pieces, so that memory grows by no more than the
+    meshes.
     """
     pieces = [
-        _mesh_piece(contours[rows], n_contour[rows], edge_length[rows], watch, flips)
+        _mesh_piece(contours[rows], n_contour[rows], edge_length[rows], watch, flips, roles)
         for rows in (slice(first, first + _PIECE) for first in range(0, max(1, len(contours)), _PIECE))
     ]
     return pieces[0] if len(pieces) == 1 else _join(pieces)
 
 
 def _mesh_piece(
-    contours: np.ndarray, n_contour: np.ndarray, edge_length: np.ndarray, watch: Stopwatch, flips: bool
+    contours: np.ndarray, n_contour: np.ndarray, edge_length: np.ndarray, watch: Stopwatch, flips: bool, roles: Roles
 ) -> ContourMeshes:
     """`mesh_contours` for all at a time."""
     # Padding of any value: the first vertex again.
@@ -58,12 +64,12 @@ def _mesh_piece(
         transformed = transformation.apply(contours)
         l_s = edge_length * transformation.scale
     with watch("NN1"):
-        wanted = networks.count_inner_vertices(transformed, n_contour, l_s)
-    places, n_inner = place_inner_vertices(transformed, n_contour, np.minimum(wanted, MOST_INNER), watch)
+        wanted = roles.count(transformed, n_contour, l_s)
+    places, n_inner = roles.place(transformed, n_contour, np.minimum(wanted, MOST_INNER), l_s, watch)
     inner = transformation.invert(places)
     with watch("triangulation"):
         points = join_vertices(contours, n_contour, inner, n_inner)
-        meshes = triangulate(points, n_contour, n_inner, lambda *rest: connect(*rest, watch))
+        meshes = triangulate(points, n_contour, n_inner, lambda *rest: connect(*rest, watch, roles))
     triangles = meshes.triangles
     if flips:
         with watch("flips"):
@@ -87,7 +93,12 @@ def _join(pieces: list[ContourMeshes]) -> ContourMeshes:
 
 
 def connect(
-    points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, entries: np.ndarray, watch: Stopwatch
+    points: np.ndarray,
+    n_contour: np.ndarray,
+    n_inner: np.ndarray,
+    entries: np.ndarray,
+    watch: Stopwatch,
+    roles: Roles = SHIPPED,
 ) -> np.ndarray:
     """NN3's values (P, 2) of the entries (P, 3) of (sub-)contours' connection tables.
 
@@ -99,7 +110,7 @@ def connect(
         # Inner vertices start at each contour's own N_C here and at the padded one in the network.
         index = np.minimum(n_contour[:, None] + np.arange(m), points.shape[1] - 1)
         inner = transformed[np.arange(len(points))[:, None], index]
-        rated = networks.rate_connections(transformed[:, :n], n_contour, inner, n_inner, entries)
+        rated = roles.rate(transformed[:, :n], n_contour, inner, n_inner, entries)
         # Rounded, so that a last bit, which may depend on the processor, decides less often.
         return np.round(rated, 4)
 

@@ -133,7 +133,7 @@ def nn3_star(n_contour: int, n_inner: int, networks: int = 1) -> Network:
     return Network(networks, inputs, hidden, n_contour + n_inner, nn.Tanh(), n_contour)
 
 
-def one_of(stack: Network, make: Network, number: int) -> Network:
-    """The network of a number of a stack, in a stack of one that was made for it, ready to be asked."""
-    make.load_state_dict({name: value[number : number + 1] for name, value in stack.state_dict().items()})
-    return make.eval()
+def one_of(stack: dict[str, torch.Tensor], single: Network, number: int) -> Network:
+    """A stack of one with the weights of one network of a stack's state, ready to be asked."""
+    single.load_state_dict({name: value[number : number + 1] for name, value in stack.items()})
+    return single.eval()
