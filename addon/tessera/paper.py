@@ -7,7 +7,7 @@ n) to rows of numbers. Contours begin at their first vertex there (`Transformati
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cache, partial
 from pathlib import Path
 
@@ -58,6 +58,11 @@ def groups(name: str = "paper", folder: Path = FOLDER) -> dict[int, list[int]]:
         if any((n, m) in connected for m in numbers):
             found[n] = numbers
     return found
+
+
+def is_trained(role: str, key: tuple[int, ...], folder: Path = FOLDER) -> bool:
+    """Whether a network "nn1" (N_C,), "nn2", "nn3" or "nn3_star" (N_C, N_I) is there."""
+    return key in _trained(role, folder)
 
 
 @cache
@@ -111,12 +116,28 @@ def _place(
     l_s: np.ndarray,
     watch: Stopwatch,
 ) -> Arrays:
-    """NN2 (section 2.4): scores of the grid points, patch by patch, and their decoding."""
+    """NN2, for groups that can be connected, too."""
     known = groups(name, folder)
+    for n, m, _ in _groups(n_contour, n_inner):
+        if m not in known.get(n, ()):
+            raise _untrained(name, folder, f"a contour of {n} edges with {m} inner vertices, which NN1 asks for")
+    return place(folder, contour, n_contour, n_inner, l_s, watch)
+
+
+def place(
+    folder: Path,
+    contour: np.ndarray,
+    n_contour: np.ndarray,
+    n_inner: np.ndarray,
+    l_s: np.ndarray,
+    watch: Stopwatch,
+) -> Arrays:
+    """NN2 alone (section 2.4): scores of the grid points, patch by patch, and their decoding; see `Roles.place`.
+
+    For groups that NN2 was trained for (`is_trained`).
+    """
     first, scores = superimpose(contour, n_contour).first, np.zeros((len(contour), GRID * GRID))
     for n, m, rows in _groups(n_contour, n_inner):
-        if m not in known.get(n, ()):
-            raise _untrained(name, folder, f"a contour of {n} edges with {m} inner vertices, which NN1 asks for,")
         if m:
             with watch("NN2"):
                 given = np.concatenate([_begun(contour[rows, :n], first[rows]), l_s[rows, None]], axis=1)
@@ -125,7 +146,7 @@ def _place(
         return decode(scores, contour, n_contour, n_inner, l_s)
 
 
-def score_patches(ask, given: np.ndarray, resolution: int) -> np.ndarray:
+def score_patches(ask: Callable[[np.ndarray], np.ndarray], given: np.ndarray, resolution: int) -> np.ndarray:
     """(B, R²) scores of a grid's points by NN2, ``ask``, for contours and targets (B, 2 N_C + 1)."""
     number = patches(resolution)
     places = grid_points(resolution)[number].reshape(len(number), -1)
@@ -144,14 +165,39 @@ def _rate(
     n_inner: np.ndarray,
     entries: np.ndarray,
 ) -> np.ndarray:
-    """NN3 or NN3* (section 2.5): q_worst of entries; 0 for q_mean, and 0 for both where no network was trained."""
+    """NN3 or NN3* (section 2.5)."""
+
+    def ask(n: int, m: int, rows: np.ndarray) -> np.ndarray | None:
+        trained = is_trained(connection, (n, m), folder)
+        return _ask(folder / f"{connection}_{n}_{m}.onnx", rows) if trained else None
+
+    return rate(ask, connection == "nn3_star", contour, n_contour, inner, n_inner, entries)
+
+
+def rate(
+    ask: Callable[[int, int, np.ndarray], np.ndarray | None],
+    by_row: bool,
+    contour: np.ndarray,
+    n_contour: np.ndarray,
+    inner: np.ndarray,
+    n_inner: np.ndarray,
+    entries: np.ndarray,
+) -> np.ndarray:
+    """What `Roles.rate` gives, from tables: q_worst of entries, and 0 for q_mean; both 0 where there is no table.
+
+    ask: the tables of a group (N_C, N_I) for rows of contours and inner vertices (b, 2 (N_C + N_I)), or None where no
+    network was trained; by_row: a table's rows one by one, for rows that end with the edge's index as 1 of N_C.
+    """
     values = np.zeros((len(entries), 2))
     first = superimpose(contour, n_contour).first
     for n, m, rows in _groups(n_contour, n_inner):
-        if (n, m) not in _trained(connection, folder):
+        given = np.concatenate([_begun(contour[rows, :n], first[rows]), inner[rows, :m].reshape(len(rows), -1)], axis=1)
+        if by_row:
+            given = np.concatenate([np.repeat(given, n, axis=0), np.tile(np.eye(n), (len(given), 1))], axis=1)
+        found = ask(n, m, given)
+        if found is None:
             continue
-        begun = _begun(contour[rows, :n], first[rows])
-        table = _table(connection, folder / f"{connection}_{n}_{m}.onnx", begun, inner[rows, :m].reshape(len(rows), -1))
+        table = found.reshape(len(rows), n, n + m)
         place = np.full(len(contour), -1)
         place[rows] = np.arange(len(rows))
         chosen = np.flatnonzero(place[entries[:, 0]] >= 0)
@@ -159,14 +205,6 @@ def _rate(
         own = np.where(vertex < n, (vertex - first[row]) % n, vertex)
         values[chosen, 0] = table[place[row], (facet - first[row]) % n, own]
     return values
-
-
-def _table(connection: str, file: Path, contour: np.ndarray, inner: np.ndarray) -> np.ndarray:
-    """(B, N_C, N_C + N_I) tables of contours (B, 2 N_C) and inner vertices (B, 2 N_I)."""
-    n, rows = contour.shape[1] // 2, np.concatenate([contour, inner], axis=1)
-    if connection == "nn3_star":
-        rows = np.concatenate([np.repeat(rows, n, axis=0), np.tile(np.eye(n), (len(rows), 1))], axis=1)
-    return _ask(file, rows).reshape(len(contour), n, -1)
 
 
 def _untrained(name: str, folder: Path, what: str) -> ContourError:

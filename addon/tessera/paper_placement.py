@@ -19,7 +19,7 @@ PATCH = 2  # points along a patch
 MARGIN = 0.1  # of l_s: grid points closer to the contour are left out
 # Of the even edge length: grid points closer to a vertex are excluded. The paper's 0.1 l_s is less than the grid's
 # spacing, so that the next vertex would be the same again.
-EXCLUSION = 0.5
+EXCLUSION = 0.6
 
 
 def grid_points(resolution: int) -> np.ndarray:

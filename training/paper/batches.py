@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 import torch
 
+from tessera.paper_placement import grid_points, patches
+
 from .data import Group, Population
 from .fitting import BATCH, Draw
-from .networks import PATCH
-from .sampling import grid_points
 
 
 def count_rows(population: Population) -> tuple[np.ndarray, np.ndarray]:
@@ -19,12 +19,6 @@ def count_rows(population: Population) -> tuple[np.ndarray, np.ndarray]:
     contour = np.repeat(population.contour.reshape(n, -1), targets, axis=0)
     given = np.concatenate([contour, np.tile(population.targets, n)[:, None]], axis=1)
     return given.astype(np.float32), population.n_inner.reshape(-1, 1).astype(np.float32)
-
-
-def patches(resolution: int) -> np.ndarray:
-    """(P, 4) numbers of the grid points of each patch of 2×2."""
-    number = np.arange(resolution**2).reshape(resolution // PATCH, PATCH, resolution // PATCH, PATCH)
-    return number.transpose(0, 2, 1, 3).reshape(-1, PATCH * PATCH)
 
 
 def scores(group: Group, resolution: int) -> np.ndarray:

@@ -16,7 +16,7 @@ from __future__ import annotations
 import torch
 from torch import nn
 
-PATCH = 2  # grid points along a patch (section 3.2.2: 100 patches of 4 points)
+from tessera.paper_placement import PATCH
 
 
 class Linear(nn.Module):

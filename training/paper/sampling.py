@@ -8,19 +8,13 @@ from pathlib import Path
 import numpy as np
 
 from tessera.cavity import distances_to_contour, is_inside
+from tessera.paper_placement import grid_points
 
 from .. import tables
 from .data import Group, Population
 
 GRID = 50  # points along the grid that vertices are drawn from (section 3.2.4; 2.5.2 names none)
-HALF_WIDTH = 1.2  # of the box that the grid covers (section 3.2.2)
 APART = 0.1  # of l_s, to the contour and to each other
-
-
-def grid_points(resolution: int) -> np.ndarray:
-    """(resolution², 2) points of the square grid over all transformed contours, row by row."""
-    steps = np.linspace(-HALF_WIDTH, HALF_WIDTH, resolution)
-    return np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
 
 
 def admissible(contour: np.ndarray, margin: float, resolution: int = GRID) -> np.ndarray:

@@ -11,6 +11,8 @@ from pathlib import Path
 import numpy as np
 import torch
 
+from tessera.paper_placement import GRID
+
 from ..provenance import code_version
 from . import settings
 from .batches import count_rows, from_groups, from_rows, table_rows
@@ -19,7 +21,6 @@ from .fitting import BATCH, Draw, fit
 from .networks import Network, nn1, nn2, nn3
 from .sampling import kept_tables, learnt_group, make_tables
 
-GRID = 20  # section 3.2.2
 ROLES = ("nn1", "nn2", "nn3")
 
 
