@@ -1,8 +1,8 @@
 """The paper's own networks as `Roles`: one NN1 for each N_C, one NN2 and NN3 for each group (N_C, N_I).
 
 They are not shipped; ``training/paper`` makes and describes them. Their files are in a folder beside the shipped ones:
-``nn1_N_C.onnx``, ``nn2_N_C_N_I.onnx``, ``nn3_N_C_N_I.onnx`` and ``nn3_star_N_C_N_I.onnx``, each from rows of numbers (B,
-n) to rows of numbers. Contours begin at their first vertex there (`Transformation.first`).
+``nn1_N_C.onnx``, ``nn2_N_C_N_I.onnx``, ``nn3_N_C_N_I.onnx`` and ``nn3_star_N_C_N_I.onnx``, each from rows of numbers
+(B, n) to rows of numbers. Contours begin at their first vertex there (`Transformation.first`).
 """
 
 from __future__ import annotations
@@ -36,7 +36,9 @@ def load(name: str = "paper", folder: Path = FOLDER) -> Roles:
     connection = CONNECTIONS[name]
     if not groups(name, folder):
         message = f"There are none of the networks that {name!r} asks for in {folder}. "
-        raise ContourError("untrained-group", message + "Train and export them (training/paper), or use the shipped ones.")
+        raise ContourError(
+            "untrained-group", message + "Train and export them (training/paper), or use the shipped ones."
+        )
     return Roles(partial(_count, name, folder), partial(_place, name, folder), partial(_rate, connection, folder))
 
 
@@ -132,18 +134,28 @@ def place(
     l_s: np.ndarray,
     watch: Stopwatch,
 ) -> Arrays:
-    """NN2 alone (section 2.4): scores of the grid points, patch by patch, and their decoding; see `Roles.place`.
-
-    For groups that NN2 was trained for (`is_trained`).
-    """
-    first, scores = superimpose(contour, n_contour).first, np.zeros((len(contour), GRID * GRID))
-    for n, m, rows in _groups(n_contour, n_inner):
-        if m:
-            with watch("NN2"):
-                given = np.concatenate([_begun(contour[rows, :n], first[rows]), l_s[rows, None]], axis=1)
-                scores[rows] = score_patches(partial(_ask, folder / f"nn2_{n}_{m}.onnx"), given, GRID)
+    """NN2 alone (section 2.4), for groups that it was trained for (`is_trained`): as `Roles.place`."""
+    scores = score(folder, contour, n_contour, n_inner, l_s, watch)
     with watch("decoding"):
         return decode(scores, contour, n_contour, n_inner, l_s)
+
+
+def score(
+    folder: Path,
+    contour: np.ndarray,
+    n_contour: np.ndarray,
+    n_inner: np.ndarray,
+    l_s: np.ndarray,
+    watch: Stopwatch,
+) -> np.ndarray:
+    """(B, R²) NN2's scores of the grid points, patch by patch; 0 for contours without inner vertices."""
+    first, scores = superimpose(contour, n_contour).first, np.zeros((len(contour), GRID * GRID))
+    with watch("NN2"):
+        for n, m, rows in _groups(n_contour, n_inner):
+            if m:
+                given = np.concatenate([_begun(contour[rows, :n], first[rows]), l_s[rows, None]], axis=1)
+                scores[rows] = score_patches(partial(_ask, folder / f"nn2_{n}_{m}.onnx"), given, GRID)
+    return scores
 
 
 def score_patches(ask: Callable[[np.ndarray], np.ndarray], given: np.ndarray, resolution: int) -> np.ndarray:

@@ -51,7 +51,9 @@ def decode(
     points = grid_points(resolution)
     if exclusion is None:
         exclusion = EXCLUSION * even_lengths(contour, n_contour, n_inner)
-    cost = np.where(_is_clear(np.broadcast_to(points, (len(scores), *points.shape)), contour, n_contour, l_s), scores, np.inf)
+    cost = np.where(
+        _is_clear(np.broadcast_to(points, (len(scores), *points.shape)), contour, n_contour, l_s), scores, np.inf
+    )
     inner = np.zeros((len(scores), int(n_inner.max(initial=0)), 2))
     count = np.zeros(len(scores), dtype=np.int64)
     for k in range(inner.shape[1]):

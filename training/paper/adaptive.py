@@ -18,7 +18,7 @@ from tessera.roles import SHIPPED, Roles
 from .. import tables
 from . import settings
 from .batches import from_rows
-from .comparing import as_contours, populations, test_group, write
+from .comparing import populations, test_group, write
 from .data import Group
 from .export import star_sorts
 from .networks import Network, nn3_star, one_of
@@ -40,7 +40,8 @@ def compare_samplings(config: dict) -> None:
     found = []
     for m in config["nn3_star"]["groups"]:
         found += of_number(config, m)
-        print(f"N_I {m}: " + ", ".join(f"{row['sampling']} {row['size']}: {row['worst']:.1f} %" for row in found if row["m"] == m))
+        own = [row for row in found if row["m"] == m]
+        print(f"N_I {m}: " + ", ".join(f"{row['sampling']} {row['size']}: {row['worst']} %" for row in own), flush=True)
     write(config, "adaptive", found)
 
 
@@ -53,7 +54,9 @@ def of_number(config: dict, m: int) -> list[dict]:
     for sampling in ("random", "adaptive"):
         file = config["folders"]["data"] / f"star-{sampling}-{n:02d}-{m:02d}.npz"
         size = star[sampling][str(m)][-1]
-        found[sampling] = kept_tables(file, lambda sampling=sampling, size=size: samples(star["seed"], group, sampling, size))
+        found[sampling] = kept_tables(
+            file, lambda sampling=sampling, size=size: samples(star["seed"], group, sampling, size)
+        )
     sizes = [star[sampling][str(m)][star["levels"].index(level)] for sampling, level in sorts]
     parts = [rows(found[sampling], n, size) for (sampling, _), size in zip(sorts, sizes, strict=True)]
     net, notes = run(
@@ -105,11 +108,19 @@ def samples(seed: int, group: Group, sampling: str, size: int) -> dict[str, np.n
     points = np.concatenate([group.contour[mesh], np.concatenate(inner)], axis=1)
     table = np.concatenate(
         [
-            tables.connection_tables(points[part], np.full(len(part), n), np.full(len(part), m))[np.arange(len(part)), edge[part], :, 0]
+            tables.connection_tables(points[part], np.full(len(part), n), np.full(len(part), m))[
+                np.arange(len(part)), edge[part], :, 0
+            ]
             for part in np.array_split(np.arange(len(points)), -(-len(points) // 2000))
         ]
     )
-    return {"points": points.astype(np.float32), "edge": edge, "row": table, "mesh": mesh, "population": np.array(population)}
+    return {
+        "points": points.astype(np.float32),
+        "edge": edge,
+        "row": table,
+        "mesh": mesh,
+        "population": np.array(population),
+    }
 
 
 def random_vertices(rng: np.random.Generator, contour: np.ndarray, inner: np.ndarray, l_s: float, size: int) -> tuple:
@@ -120,11 +131,9 @@ def random_vertices(rng: np.random.Generator, contour: np.ndarray, inner: np.nda
 
 
 def adaptive_vertices(rng: np.random.Generator, contour: np.ndarray, inner: np.ndarray, l_s: float, size: int) -> tuple:
-    """Vertices (s, N_I, 2) sampled from the surfaces S_ni of an edge each, those edges (s,), and how many there were."""
+    """Vertices (s, N_I, 2) sampled from the surfaces S_ni of an edge each, those edges (s,), how many there were."""
     n, m, spots = len(contour), len(inner), inside(contour, l_s)
-    numbers = [
-        sampled(rng, quality_surfaces(contour, np.delete(inner, k, axis=0), spots), spots) for k in range(m)
-    ]
+    numbers = [sampled(rng, quality_surfaces(contour, np.delete(inner, k, axis=0), spots), spots) for k in range(m)]
     places = grid_points(GRID)[np.stack(numbers, axis=1)]  # (N_C, N_I, 45, 2)
     each = places.shape[2]
     if m == 1:

@@ -37,7 +37,7 @@ def as_contours(contour: np.ndarray, l_s: np.ndarray) -> Contours:
 
 
 def errors(meshes: Meshes, contours: Contours, reference: np.ndarray) -> np.ndarray:
-    """e_worst and e_mean (k, 2) of section 3.1.1 in per cent, against qualities (k, 2); NaN where a mesh is not valid."""
+    """e_worst and e_mean (k, 2) of section 3.1.1 in per cent, against qualities (k, 2); NaN of invalid meshes."""
     found = np.where(are_valid(meshes, contours)[:, None], measure(meshes, contours.l_s)[:, :2], np.nan)
     return 100 * (reference - found) / reference
 

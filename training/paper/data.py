@@ -1,4 +1,4 @@
-"""The paper's populations in memory: contours and their reference meshes, and the groups by number of inner vertices."""
+"""The paper's populations in memory: contours and their reference meshes, in groups by inner vertices."""
 
 from __future__ import annotations
 

@@ -47,7 +47,9 @@ def export_all(config: dict) -> None:
     total = sum(file.stat().st_size for file in folder.glob("*.onnx"))
     print(f"{len(written)} networks, {total / 1e6:.1f} MB together")
     if total > MOST_BYTES:
-        raise SystemExit(f"{folder} holds {total / 1e6:.1f} MB, more than {MOST_BYTES / 1e6:.0f} MB: export fewer groups")
+        raise SystemExit(
+            f"{folder} holds {total / 1e6:.1f} MB, more than {MOST_BYTES / 1e6:.0f} MB: export fewer groups"
+        )
 
 
 def trained(config: dict) -> Iterator[tuple[str, Network, dict]]:
@@ -79,7 +81,11 @@ def _of(config: dict, run: str, names: list[str | None] | None, make: Callable[[
     names = names or [f"{run}_{m}" for m in notes["numbers"]]
     for number, name in enumerate(names):
         if name is not None:
-            yield name, one_of(stack, make(), number), notes | {"examples": notes["examples"][number], "step": state["step"]}
+            yield (
+                name,
+                one_of(stack, make(), number),
+                notes | {"examples": notes["examples"][number], "step": state["step"]},
+            )
 
 
 def export(file: Path, net: Network, notes: dict) -> Path:

@@ -29,7 +29,7 @@ def make_all(config: dict) -> None:
     folder, data = config["folders"]["data"], config["data"]
     folder.mkdir(parents=True, exist_ok=True)
     reference.start()
-    for split, seed in reversed(data["seeds"].items()):
+    for split, seed in data["seeds"].items():
         for n, count in data[split].items():
             for number in range(-(-count // data["shard"])):
                 file = shard_file(folder, split, n, number)

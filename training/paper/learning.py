@@ -33,7 +33,10 @@ def measure_curves(config: dict) -> None:
     torch.set_num_threads(1)
     found = [curve(config) for curve in (count_curve, score_curve, table_curve)]
     for row in found:
-        print(f"{row['role']}: " + ", ".join(f"{a}: {b:.4g}" for a, b in zip(*(row[k] for k in ("size", "loss")), strict=True)))
+        print(
+            f"{row['role']}: "
+            + ", ".join(f"{a}: {b:.4g}" for a, b in zip(*(row[k] for k in ("size", "loss")), strict=True))
+        )
     write(config, "learning", found)
 
 

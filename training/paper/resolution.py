@@ -1,4 +1,4 @@
-"""Fig. 21: ``python -m training.paper.resolution``. NN2 for one inner vertex on grids of 10, 20 and 40 points a side."""
+"""Fig. 21: ``python -m training.paper.resolution``. NN2 for one inner vertex on grids of 10, 20 and 40."""
 
 from __future__ import annotations
 
@@ -15,8 +15,6 @@ from .data import Group
 from .networks import Network, nn2, one_of
 from .train import chosen, run
 
-FEWEST = 50  # meshes that are worth training on
-
 
 def main() -> None:
     """Train, measure, and keep what was found."""
@@ -32,7 +30,7 @@ def compare_grids(config: dict) -> None:
     for n in config["data"]["train"]:
         trained, tested = populations(config, n)
         group, test = trained.group(1), tested.group(1).rows(slice(wanted["contours"]))
-        if len(group) < FEWEST or not len(test):
+        if len(group) < wanted["fewest"] or not len(test):
             continue
         group = chosen(group, config["nn2"]["meshes"])
         net, notes = run(

@@ -29,9 +29,7 @@ def groups_per_contour(n_inner: int) -> int:
     return 50 if n_inner <= 4 else 100 if n_inner <= 8 else 200
 
 
-def random_groups(
-    rng: np.random.Generator, places: np.ndarray, n_inner: int, count: int, apart: float
-) -> np.ndarray:
+def random_groups(rng: np.random.Generator, places: np.ndarray, n_inner: int, count: int, apart: float) -> np.ndarray:
     """Groups (count, N_I, 2) of grid points (k, 2), those of a group at least ``apart`` from each other.
 
     Fewer than ``count``, or none, where there are too few points to draw from.
@@ -66,7 +64,7 @@ def make_tables(rng: np.random.Generator, group: Group, n_inner: int) -> dict[st
 
 
 def learnt_group(population: Population, n_inner: int, most: int) -> Group:
-    """The meshes that NN3 learns from: the population's group, filled up by contours that the reference meshes otherwise.
+    """The meshes that NN3 learns from: the population's group, filled up by contours of other groups.
 
     Those have NaN for inner vertices, so that only random ones are learnt from; a contour is there once where it can
     be. Without inner vertices the mesh does not matter, so every contour is of the group.

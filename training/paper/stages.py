@@ -46,7 +46,7 @@ def compare_all(config: dict) -> None:
 
 
 def placed(config: dict, roles: dict[str, Roles], group: Group) -> list[dict]:
-    """Fig. 22: NN2's places of as many vertices as the reference has, connected by CDT, against the reference's mesh."""
+    """Fig. 22: NN2's places of as many vertices as the reference has, by CDT, against the reference's mesh."""
     contours, folder = as_contours(group.contour, group.l_s), config["folders"]["models"]
     m = group.inner.shape[1]
     asked, found = np.full(len(group), min(m, MOST_INNER)), []
@@ -87,7 +87,8 @@ def _triangulated(group: Group, table: Connect) -> dict:
     reference = measure(by_delaunay(contours, points, n_inner), group.l_s)[:, :2]
     made = triangulate(points, contours.n_contour, n_inner, table)
     meshes = Meshes(points, contours.n_contour, n_inner, made.triangles.astype(np.int64), made.owner.astype(np.int64))
-    return {**mean_errors(errors(meshes, contours, reference)), "fallbacks": float(made.fallbacks.mean())}
+    fallbacks = made.fallbacks.sum() / max(1, len(group))
+    return {**mean_errors(errors(meshes, contours, reference)), "fallbacks": float(fallbacks)}
 
 
 def whole(config: dict, roles: dict[str, Roles], tested: Population) -> list[dict]:

@@ -1,4 +1,4 @@
-"""Adaptive sampling of inner vertices (section 2.5.3, Figs. 15 and 16): quality surfaces, smoothed, and their curvature."""
+"""Adaptive sampling of inner vertices (section 2.5.3, Figs. 15 and 16): quality surfaces and their curvature."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def _gaussian(surfaces: np.ndarray) -> np.ndarray:
     """Along both axes, (k, R, R)."""
     steps = np.arange(GRID)
     kernel = np.exp(-0.5 * ((steps[:, None] - steps) / _SIGMA) ** 2)
-    return np.einsum("ab,kbc,dc->kad", kernel, surfaces, kernel)
+    return kernel @ surfaces @ kernel.T
 
 
 def curvature(surfaces: np.ndarray, chosen: np.ndarray) -> np.ndarray:

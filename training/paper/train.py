@@ -17,7 +17,7 @@ from ..provenance import code_version
 from . import settings
 from .batches import count_rows, from_groups, from_rows, table_rows
 from .data import Group, Population, load
-from .fitting import BATCH, Draw, fit
+from .fitting import BATCH, fit
 from .networks import Network, nn1, nn2, nn3
 from .sampling import kept_tables, learnt_group, make_tables
 
@@ -46,7 +46,13 @@ def train_all(config: dict, roles: tuple[str, ...] = ROLES) -> None:
 def train_nn1(config: dict, population: Population) -> None:
     """Section 2.3, Algorithm 1."""
     n = population.contour.shape[1]
-    run(config, "nn1", f"nn1_{n}", lambda: nn1(n), lambda: (from_rows([count_rows(population)]), [population.n_inner.size]))
+    run(
+        config,
+        "nn1",
+        f"nn1_{n}",
+        lambda: nn1(n),
+        lambda: (from_rows([count_rows(population)]), [population.n_inner.size]),
+    )
 
 
 def train_nn2(config: dict, population: Population) -> None:
