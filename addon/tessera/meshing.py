@@ -93,8 +93,8 @@ def mesh_contour(
     """Mesh one contour by the paper's scheme alone: 3 ≤ N_C ≤ 16, its vertices are the boundary, untouched.
 
     points: (N_C, 2); flips, smooth: as in `mesh`; networks: "shipped", or the paper's own, "paper" with NN3 and
-    "paper*" with NN3*, for contours that they were trained for (else ContourError "untrained-group"). The mesh's first N_C
-    vertices are the contour's, counter-clockwise. Raises ContourError.
+    "paper*" with NN3*, for contours that they were trained for (else ContourError "untrained-group"). The mesh's first
+    N_C vertices are the contour's, counter-clockwise. Raises ContourError.
     """
     edge_length, smooth = checked_edge_length(edge_length), checked_steps(smooth)
     contour = clean_loop(points)

@@ -1,5 +1,7 @@
 """The paper's networks: their shapes and inputs, what they learn from, and the whole report on tiny populations."""
 
+import tomllib
+
 import numpy as np
 import pytest
 import torch
@@ -9,7 +11,7 @@ from tessera import paper, paper_placement
 from tessera.cavity import is_inside
 from tessera.roles import SHIPPED
 from tests.validity import check_mesh
-from training import contours
+from training import configuration, contours
 from training.paper import batches, data, generate, networks, sampling, settings, train
 from training.paper.__main__ import everything
 
@@ -202,3 +204,11 @@ def test_a_contour_has_the_same_answer_wherever_it_begins():
 def test_the_shipped_roles_are_the_shipped_networks():
     assert SHIPPED.count is tessera.networks.count_inner_vertices
     assert paper.roles_named("shipped") is SHIPPED
+
+
+def test_the_kept_networks_are_small_and_not_in_the_extension():
+    kept = list(paper.FOLDER.glob("*.onnx"))
+    assert kept and sum(file.stat().st_size for file in kept) < 15e6
+    manifest = tomllib.loads((configuration.ROOT / "blender_manifest.toml").read_text())
+    patterns = manifest["build"]["paths_exclude_pattern"]
+    assert patterns[0] == "/*" and not any(paper.FOLDER.name in pattern for pattern in patterns)
