@@ -11,6 +11,7 @@
     python -m training.paper.exclusion     the radius of exclusion, of which the paper's is too small
     python -m training.paper.stages        Figs. 22, 24, 25 and 27
     python -m training.paper.adaptive      Table 1, Figs. 15, 16 and 26
+    python -m training.paper.speed         section 5
     python -m training.paper.domains       Table 2
     python -m training.paper.learning      learning curves over populations
     python -m training.paper.report        docs/reproduction.md, from what the others have left in runs/paper/

@@ -13,6 +13,7 @@ from .learning import measure_curves
 from .populations import count_all
 from .report import write_report
 from .resolution import compare_grids
+from .speed import measure_speed
 from .stages import compare_all
 from .train import train_all
 
@@ -26,6 +27,7 @@ STEPS = (
     compare_counts,
     compare_grids,
     compare_all,
+    measure_speed,
     mesh_all,
     measure_curves,
     write_report,

@@ -21,7 +21,7 @@ from .data import load
 from .sampling import GRID
 from .surfaces import inside, quality_surfaces, sampled, smoothed
 
-NAMES = ("populations", "counts", "resolution", "stages", "adaptive", "domains", "learning", "exclusion")
+NAMES = ("populations", "counts", "resolution", "stages", "adaptive", "domains", "learning", "exclusion", "speed")
 
 
 def main() -> None:
@@ -66,6 +66,9 @@ def write_report(config: dict) -> Path:
         texts.DOMAINS,
         "![Figs. 28 to 30](reproduction/domains.png)",
         domain_table(found["domains"]),
+        "## Section 5: speed",
+        texts.SPEED,
+        speed_table(found["speed"]),
         "## What larger populations would give",
         texts.LEARNING,
         "![Learning curves](reproduction/learning.png)",
@@ -258,6 +261,13 @@ def domain_table(rows: list[dict]) -> str:
         for row in rows
     ]
     return table(["", "paper: q_worst, q_mean", "the shipped networks", "triangles"], lines)
+
+
+def speed_table(rows: list[dict]) -> str:
+    """Milliseconds a contour."""
+    names = [name for name in rows[0] if name not in ("n", "contours")] if rows else []
+    lines = [[str(row["n"]), str(row["contours"]), *(f"{row[name]:.2f}" for name in names)] for row in rows]
+    return table(["N_C", "contours", *(f"{name}, ms" for name in names)], lines)
 
 
 def learning_table(rows: list[dict]) -> str:

@@ -13,7 +13,7 @@ from .sampling import APART, GRID
 EACH = 45  # vertices of a surface (section 3.2.4)
 APART_OF_SEVERAL = 0.3  # of l_s
 _SIGMA = 1.5  # of the smoothing, in grid spacings
-_FLOOR = 0.05  # of the largest curvature, so that flat parts are seen too
+_FLOOR = 0.05  # of the largest weight, so that flat parts are seen too
 
 
 def inside(contour: np.ndarray, l_s: float) -> np.ndarray:
@@ -62,8 +62,12 @@ def curvature(surfaces: np.ndarray, chosen: np.ndarray) -> np.ndarray:
 
 
 def sampled(rng: np.random.Generator, surfaces: np.ndarray, chosen: np.ndarray) -> np.ndarray:
-    """(N_C, 45) numbers of grid points, drawn the more often the more the smoothed surface is curved there."""
-    weight = curvature(smoothed(surfaces, chosen), chosen)
+    """(N_C, 45) numbers of grid points, drawn the more often the more the smoothed surface is curved there.
+
+    By the root of the curvature: linear interpolation between samples a distance h apart is wrong by h² times it, over
+    an area of h², so that with this density every sample stands for as much of the error ("curvature loss").
+    """
+    weight = np.sqrt(curvature(smoothed(surfaces, chosen), chosen))
     weight = np.where(chosen, weight + _FLOOR * weight.max(axis=1, keepdims=True) + 1e-12, 0)
     # Drawn without replacement: the largest of the logarithms with Gumbel noise.
     with np.errstate(divide="ignore"):
