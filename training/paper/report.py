@@ -21,7 +21,7 @@ from .data import load
 from .sampling import GRID
 from .surfaces import inside, quality_surfaces, sampled, smoothed
 
-NAMES = ("populations", "counts", "resolution", "stages", "adaptive", "domains", "learning", "exclusion", "speed")
+NAMES = ("populations", "counts", "resolution", "adaptive", "domains", "learning", "exclusion", "speed")
 
 
 def main() -> None:
@@ -33,6 +33,7 @@ def main() -> None:
 def write_report(config: dict) -> Path:
     """Write the text and draw the pictures; returns the text's file."""
     found = {name: read(config, name) for name in NAMES}
+    found["stages"] = [row for n in config["data"]["train"] for row in read(config, f"stages_{n}")]
     folder = config["folders"]["docs"]
     pictures = folder / "reproduction"
     pictures.mkdir(parents=True, exist_ok=True)

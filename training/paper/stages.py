@@ -1,10 +1,11 @@
-"""Figs. 22, 24, 25 and 27: ``python -m training.paper.stages``. Each stage alone, and the whole scheme.
+"""Figs. 22, 24, 25 and 27: ``python -m training.paper.stages [N_C ...]``. Each stage alone, and the whole scheme.
 
 By groups (N_C, N_I) of test contours, by the paper's networks where the group was trained and by the shipped ones.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
@@ -26,23 +27,23 @@ from .data import Group, Population
 
 def main() -> None:
     """Compare all stages, and keep what was found."""
-    config, _ = settings.from_command_line(__doc__)
-    compare_all(config)
+    config, arguments = settings.from_command_line(__doc__, ("edges", {"nargs": "*", "type": int, "metavar": "N_C"}))
+    compare_all(config, arguments.edges)
 
 
-def compare_all(config: dict) -> None:
-    """All four figures."""
-    roles, found = compared(config), []
-    for n in config["data"]["train"]:
+def compare_all(config: dict, edges: Sequence[int] = ()) -> None:
+    """All four figures, of some numbers of edges or all."""
+    roles = compared(config)
+    for n in edges or config["data"]["train"]:
         trained, tested = populations(config, n)
+        found = [{"n": n, **row} for row in whole(config, roles, tested)]
         for m in config["nn2"]["groups"][n]:
             group = test_group(config, trained, tested, m)
             if len(group):
                 rows = [*placed(config, roles, group), *connected(config, roles, group)]
                 found += [{"n": n, "m": m, **row} for row in rows]
-        found += [{"n": n, **row} for row in whole(config, roles, tested)]
-        print(f"N_C {n}: {sum(row['n'] == n for row in found)} rows", flush=True)
-    write(config, "stages", found)
+        write(config, f"stages_{n}", found)
+        print(f"N_C {n}: {len(found)} rows", flush=True)
 
 
 def placed(config: dict, roles: dict[str, Roles], group: Group) -> list[dict]:

@@ -66,9 +66,9 @@ are like its figures: a circle of 150 edges, a symmetric airfoil with a sharp tr
 square with a round hole. The paper divides them by hand and refines; the library divides, refines and remeshes."""
 
 SPEED = """Milliseconds a contour, in one process and in the same rounds, the fastest of three, at l_s 1, for contours
-whose group is trained: in a batch, and one call of the scheme for each. Gmsh's time has its model's set-up in it, through its
-Python API; it is written in C++, the rest in Python. Most of a call for one contour is the cost of calling numpy and
-onnxruntime, which a batch shares."""
+whose group is trained: in a batch, and one call of the scheme for each. Gmsh's time has its model's set-up in it,
+through its Python API; it is written in C++, the rest in Python. Most of a call for one contour is the cost of calling
+numpy and onnxruntime, which a batch shares."""
 
 LEARNING = """One NN1, NN2 and NN3, each trained on shares of its population for as many steps, measured on test
 contours (NN3 on random vertices in them). Where a curve still falls at its right end, a larger population would help;
