@@ -7,6 +7,7 @@ from io import BytesIO
 from pathlib import Path
 
 import matplotlib
+import matplotlib.ticker
 import numpy as np
 from PIL import Image
 
@@ -64,35 +65,32 @@ def draw_stage(path: Path, rows: list[dict], figure_number: int) -> None:
     """Figs. 22, 24, 25 or 27: a panel for each N_C, ē_worst full and ē_mean dashed, over N_I; the paper's as stars."""
     rows = [row for row in rows if row["figure"] == figure_number and row["m"] is not None and row["contours"]]
     numbers = sorted({row["n"] for row in rows})
-    columns = 4
-    figure, axes = plt.subplots(
-        -(-max(1, len(numbers)) // columns), columns, figsize=(13, 2.9 * -(-max(1, len(numbers)) // columns))
-    )
-    axes = np.ravel(axes)
+    lines = -(-(len(numbers) + 1) // 4)
+    figure, axes = plt.subplots(lines, 4, figsize=(13, 2.9 * lines))
+    axes, entries = np.ravel(axes), {}
     for ax, n in zip(axes, numbers, strict=False):
         for name in (PAPER, OURS):
-            line = sorted(
-                (row["m"], row["worst"], row["worst_spread"], row["mean"])
-                for row in rows
-                if (row["n"], row["networks"]) == (n, name)
-            )
+            line = [row for row in rows if (row["n"], row["networks"]) == (n, name)]
             if line:
-                m, worst, spread, mean = np.transpose(line)
-                label = "calculated tables" if figure_number == 24 else name
-                ax.errorbar(
-                    m, worst, spread, fmt="o-", ms=3, capsize=2, color=_COLOURS[name], label=f"{label}: ē_worst"
-                )
-                ax.plot(m, mean, "--", lw=1, color=_COLOURS[name], label="ē_mean")
+                _draw_errors(ax, line, "calculated tables" if figure_number == 24 else name, _COLOURS[name])
         named = [(m, value) for (of, m), value in NAMED[figure_number].items() if of == n]
         if named:
-            ax.plot(*zip(*named, strict=True), "*", ms=11, color="#2a9d8f", label="the paper's text")
+            ax.plot(*zip(*named, strict=True), "*", ms=11, color="#2a9d8f", label="ē_worst in the paper's text")
         ax.set(title=f"N_C {n}", xlabel="N_I", ylabel="%")
+        ax.xaxis.set_major_locator(matplotlib.ticker.MaxNLocator(integer=True))
         ax.axhline(0, color="grey", lw=0.6)
         ax.grid(alpha=0.3)
-    if numbers:
-        axes[len(numbers) - 1].legend(fontsize=6)
+        entries |= dict(zip(*reversed(ax.get_legend_handles_labels()), strict=True))
     _hide(axes, len(numbers))
+    axes[len(numbers)].legend(entries.values(), entries.keys(), fontsize=9, loc="center")
     _save(figure, path)
+
+
+def _draw_errors(ax: plt.Axes, rows: list[dict], label: str, colour: str) -> None:
+    """One line of ē_worst, with standard errors, and one of ē_mean."""
+    m, worst, spread, mean = np.transpose(sorted((r["m"], r["worst"], r["worst_spread"], r["mean"]) for r in rows))
+    ax.errorbar(m, worst, spread, fmt="o-", ms=3, capsize=2, color=colour, label=f"{label}: ē_worst")
+    ax.plot(m, mean, "--", lw=1, color=colour, label=f"{label}: ē_mean")
 
 
 def draw_adaptive(path: Path, rows: list[dict]) -> None:
