@@ -46,7 +46,7 @@ def count_curve(config: dict) -> dict:
     n = wanted["n_contour"]
     trained, tested = populations(config, n)
     sizes = [max(1, round(share * len(trained.contour))) for share in shares]
-    net, _ = run(
+    net, notes = run(
         config,
         "nn1",
         f"learning_nn1_{n}",
@@ -61,7 +61,14 @@ def count_curve(config: dict) -> dict:
     )
     given, answer = count_rows(tested)
     loss = _asked(net, given, lambda out: np.abs(out - answer).mean())
-    return {"role": "NN1", "n": n, "what": "mean absolute error of N_I", "of": "contours", "size": sizes, "loss": loss}
+    return {
+        "role": "NN1",
+        "n": n,
+        "what": "mean absolute error of N_I",
+        "of": "contours",
+        "size": sizes,
+        "loss": loss,
+    } | by_steps(notes)
 
 
 def score_curve(config: dict) -> dict:
@@ -72,7 +79,7 @@ def score_curve(config: dict) -> dict:
     group = chosen(trained.group(m), len(trained.contour))
     parts = [group.rows(slice(max(1, round(share * len(group))))) for share in shares]
     sizes = [len(part) for part in parts]
-    net, _ = run(
+    net, notes = run(
         config,
         "nn2",
         f"learning_nn2_{n}_{m}",
@@ -85,7 +92,15 @@ def score_curve(config: dict) -> dict:
     given, answer = score_rows(test_group(config, trained, tested, m))
     loss = _asked(net, given, lambda out: np.sqrt(np.square(out - answer).mean()))
     what = "root mean square error of the scores"
-    return {"role": "NN2", "n": n, "m": m, "what": what, "of": "meshes of the group", "size": sizes, "loss": loss}
+    return {
+        "role": "NN2",
+        "n": n,
+        "m": m,
+        "what": what,
+        "of": "meshes of the group",
+        "size": sizes,
+        "loss": loss,
+    } | by_steps(notes)
 
 
 def score_rows(group: Group) -> tuple[np.ndarray, np.ndarray]:
@@ -105,7 +120,7 @@ def table_curve(config: dict) -> dict:
     found = tables_of(config, trained, m)
     sizes = [max(1, round(share * (found["mesh"].max() + 1))) for share in shares]
     parts = [table_rows({name: array[found["mesh"] < size] for name, array in found.items()}) for size in sizes]
-    net, _ = run(
+    net, notes = run(
         config,
         "nn3",
         f"learning_nn3_{n}_{m}",
@@ -119,7 +134,20 @@ def table_curve(config: dict) -> dict:
     given, answer = table_rows(make_tables(np.random.default_rng(5), group, m))
     loss = _asked(net, given, lambda out: np.sqrt(np.square(out - answer).mean()))
     what = "root mean square error of the table's entries"
-    return {"role": "NN3", "n": n, "m": m, "what": what, "of": "meshes of the group", "size": sizes, "loss": loss}
+    return {
+        "role": "NN3",
+        "n": n,
+        "m": m,
+        "what": what,
+        "of": "meshes of the group",
+        "size": sizes,
+        "loss": loss,
+    } | by_steps(notes)
+
+
+def by_steps(notes: dict) -> dict:
+    """The training loss of the network of the largest population, over the batches that it has seen."""
+    return {"steps": [step for step, _ in notes["curve"]], "training": [loss[-1] for _, loss in notes["curve"]]}
 
 
 def _asked(net: Network, given: np.ndarray, measure) -> Sequence[float]:

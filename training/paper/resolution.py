@@ -30,7 +30,7 @@ def compare_grids(config: dict) -> None:
     for n in config["data"]["train"]:
         trained, tested = populations(config, n)
         group, test = trained.group(1), tested.group(1).rows(slice(wanted["contours"]))
-        if len(group) < wanted["fewest"] or not len(test):
+        if min(len(group), len(test)) < wanted["fewest"]:
             continue
         group = chosen(group, config["nn2"]["meshes"])
         net, notes = run(
