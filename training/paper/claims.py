@@ -16,6 +16,7 @@ from .comparing import OURS, PAPER
 CLOSE = 0.15  # of the paper's number, or two standard errors if that is more: reproduced
 ENOUGH = 50  # contours of a group whose error is counted among the largest
 NAMED = {stage.figure: stage.paper for stage in STAGES if stage.paper}  # ē_worst by figure and group (N_C, N_I)
+COUNT_ERRORS = {(16, 0.2): 1.5, (14, 0.2): 1.3, (14, 1.0): 0.2}  # Fig. 19, by N_C and l_s
 # Fig. 26: the confidence level that the paper compares at, how much better, and with how many fewer samples.
 ADAPTIVE = {1: (96, 27, 35), 2: (90, 18, 22), 4: (90, 27, 17)}
 TABLE_2 = {"Circle": (0.88, 0.97), "Airfoil": (0.69, 0.90), "Contour with hole": (0.66, 0.85)}
@@ -62,7 +63,7 @@ def _counts(rows: list[dict]) -> Iterable[Claim]:
     def error(networks: str, n: int, l_s: float) -> float | None:
         return _only(row["error"] for row in rows if (row["networks"], row["n"], row["l_s"]) == (networks, n, l_s))
 
-    for n, l_s, paper in ((16, 0.2, 1.5), (14, 0.2, 1.3), (14, 1.0, 0.2)):
+    for (n, l_s), paper in COUNT_ERRORS.items():
         ours, shipped = error(PAPER, n, l_s), error(OURS, n, l_s)
         what = f"Fig. 19: NN1's mean absolute error, N_C {n}, l_s {l_s:g}"
         yield Claim(what, f"{paper:g}", number(ours, "{:.2f}"), answer(ours, paper), number(shipped, "{:.2f}"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from io import BytesIO
 from pathlib import Path
@@ -11,7 +12,7 @@ import matplotlib.ticker
 import numpy as np
 from PIL import Image
 
-from .claims import NAMED
+from .claims import COUNT_ERRORS, NAMED
 from .comparing import OURS, PAPER
 
 matplotlib.use("Agg")
@@ -45,7 +46,14 @@ def draw_counts(path: Path, rows: list[dict]) -> None:
             ax.plot(*zip(*line, strict=True), "o-", ms=3, color=colour, label=f"N_C {n}")
         ax.set(title=name, xlabel="l_s", ylabel="mean absolute error of N_I", yscale="log")
         ax.grid(alpha=0.3)
-    axes[0].legend(fontsize=7)
+    for (n, l_s), error in COUNT_ERRORS.items():
+        if n in numbers:
+            colour = plt.cm.viridis(0.9 * numbers.index(n) / max(1, len(numbers) - 1))
+            axes[0].plot(
+                l_s, error, "*", ms=11, color=colour, mec="black", mew=0.5, label=f"N_C {n} in the paper's text"
+            )
+    entries = dict(zip(*reversed(axes[0].get_legend_handles_labels()), strict=True))
+    axes[0].legend(entries.values(), entries.keys(), fontsize=7, ncols=2)
     _save(figure, path)
 
 
@@ -136,7 +144,10 @@ def draw_learning(path: Path, rows: list[dict]) -> None:
     for ax, row in zip(axes, rows, strict=True):
         ax.plot(row["size"], row["loss"], "o-", color=_COLOURS[PAPER])
         group = f"N_C {row['n']}" + (f", N_I {row['m']}" if "m" in row else "")
-        ax.set(title=f"{row['role']}, {group}", xlabel=row["of"], ylabel=row["what"], xscale="log", ylim=(0, None))
+        ax.set(title=f"{row['role']}, {group}", xlabel=row["of"], xscale="log", ylim=(0, 1.1 * max(row["loss"])))
+        ax.set_ylabel(textwrap.fill(row["what"], 24), fontsize=9)
+        ax.set_xticks(row["size"], [f"{size:,}" for size in row["size"]], fontsize=8)
+        ax.xaxis.set_minor_locator(matplotlib.ticker.NullLocator())
         ax.grid(alpha=0.3)
     _save(figure, path)
 
