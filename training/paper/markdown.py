@@ -53,9 +53,12 @@ def population_table(config: dict, found: dict) -> str:
 
 
 def epochs(config: dict, run: str) -> list[float]:
-    """Of each network of a run, none where it is not there."""
+    """Of each network of a run, as far as it came; none where it is not there."""
     file = config["folders"]["runs"] / f"{run}.pt"
-    return torch.load(file, weights_only=False)["notes"]["epochs"] if file.exists() else []
+    if not file.exists():
+        return []
+    state = torch.load(file, weights_only=False)
+    return [value * state["step"] / state["notes"]["steps"] for value in state["notes"]["epochs"]]
 
 
 def _range(values: Sequence[float]) -> str:

@@ -133,7 +133,7 @@ def draw_surfaces(
         ax.plot(*closed.T, "-", color="black", lw=1)
         ax.plot(*closed[:2].T, "-", color="#e63946", lw=3)
         ax.plot(*others.T, "s", color="#e63946", ms=5)
-        ax.set(title=title, xticks=[], yticks=[])
+        ax.set(title=title, xticks=[], yticks=[], xlim=(-1.6, 1.6), ylim=(-1.6, 1.6))
     axes[2].plot(*points.T, ".", color="white", ms=5)
     _save(figure, path)
 
