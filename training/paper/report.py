@@ -37,7 +37,12 @@ def write_report(config: dict) -> Path:
     draw(folder / "reproduction", config, found)
     parts = ["# The paper, reproduced", texts.introduction(config, reference.VERSION)]
     parts += ["## The paper's claims", markdown.claim_table(claims(found)), "## Populations and epochs"]
-    parts += [texts.POPULATIONS, markdown.population_table(config, found), _picture("Figs. 17 and 18", "populations")]
+    sizes = {role: config[role]["meshes"] for role in ("nn2", "nn3")}
+    parts += [
+        texts.POPULATIONS.format(**sizes),
+        markdown.population_table(config, found),
+        _picture("Figs. 17 and 18", "populations"),
+    ]
     parts += figures(found)
     file = folder / "reproduction.md"
     file.write_text("\n\n".join(parts) + "\n")

@@ -8,12 +8,12 @@ PAPER_POPULATIONS = {4: "6,000", 6: "12,000", 8: "24,000"}
 
 POPULATIONS = """The paper's populations grow nearly exponentially; it gives numbers for 4, 6 and 8 edges only. Each
 contour is meshed at nine target edge lengths, and each mesh is an example for NN1 and, by its number of inner vertices,
-for the NN2 and NN3 of its group. NN3 learns from at most the number of meshes in `training/paper/config.toml`, each
-with the paper's 50 (N_I up to 4), 100 (5 to 8) or 200 random groups of inner vertices. An epoch is all examples of a
-network once; a mesh is 100 examples for NN2, a patch of the grid each. Numbers in brackets are the paper's epochs. With
-4 edges Gmsh inserts none or one vertex almost always, as long frozen edges win over the target, so groups that the
-paper has with 3 and 4 vertices hardly exist here: their NN3 learn from random vertices alone. With 16 edges and l_s 0.2
-it inserts about 50, which the paper's figures do not reach either."""
+for the NN2 and NN3 of its group: NN2 learns from at most {nn2:,} meshes of a group, NN3 from {nn3:,}, each with the
+paper's 50 (N_I up to 4), 100 (5 to 8) or 200 random groups of inner vertices. An epoch is all examples of a network
+once; a mesh is 100 examples for NN2, a patch of the grid each. Numbers in brackets are the paper's epochs. With 4 edges
+Gmsh inserts none or one vertex almost always, as long frozen edges win over the target, so groups that the paper has
+with 3 and 4 vertices hardly exist here: their NN3 learn from random vertices alone, and are not tested. With 16 edges
+and l_s 0.2 it inserts about 50, which the paper's figures do not reach either."""
 
 COUNTS = """NN1 against Gmsh's count. The paper's numbers at l_s = 0.2 belong to another setting of its mesher's size:
 its standard deviation of N_I (in brackets here) is 5.2 with 16 edges and 1.4 with 4; here it is larger with 16 and
@@ -45,10 +45,10 @@ of all their triangulations; so it is a little better than CDT, where the paper'
     25: (
         "connections (NN3 alone)",
         """Gmsh's vertices, connected by Algorithm 3 with NN3's tables, against CDT of them. The errors grow with N_I
-from 4 on, above the paper's: NN3 is trained for some dozens of epochs, not 5000. Its one value per entry is q_worst,
-which very often is that of an element elsewhere, so that small errors decide between entries that should tie; the
-library takes no more than the element's own quality for it. Groups that were not trained have no point. The shipped NN3
-sees one element at a time, with exact geometry, and hardly errs.""",
+from 4 on, above the paper's: NN3 is trained for some dozens of epochs, not 5000, and its loss still falls. Its one value
+per entry is q_worst, which very often is that of an element elsewhere, so that small errors decide between entries that
+should tie; the library takes no more than the element's own quality for it. Groups that were not trained have no point.
+The shipped NN3 sees one element at a time, with exact geometry, and hardly errs.""",
     ),
     27: (
         "the whole scheme",
