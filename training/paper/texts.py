@@ -45,8 +45,8 @@ of all their triangulations; so it is a little better than CDT, where the paper'
     25: (
         "connections (NN3 alone)",
         """Gmsh's vertices, connected by Algorithm 3 with NN3's tables, against CDT of them. The errors grow with N_I
-from 4 on, above the paper's: NN3 is trained for some dozens of epochs, not 5000, and its loss still falls. Its one value
-per entry is q_worst, which very often is that of an element elsewhere, so that small errors decide between entries that
+from 4 on, above the paper's: NN3 is trained for some dozens of epochs, not 5000, and its loss still falls. Its one
+value per entry is q_worst, which very often is that of an element elsewhere, so that small errors decide between entries that
 should tie; the library takes no more than the element's own quality for it. Groups that were not trained have no point.
 The shipped NN3 sees one element at a time, with exact geometry, and hardly errs.""",
     ),
@@ -73,12 +73,13 @@ square with a round hole. The paper divides them by hand and refines; the librar
 SPEED = """Milliseconds a contour, in one process and in the same rounds, the fastest of three, at l_s 1, for contours
 whose group is trained: in a batch, and one call of the scheme for each. Gmsh's time has its model's set-up in it,
 through its Python API; it is written in C++, the rest in Python. Most of a call for one contour is the cost of calling
-numpy and onnxruntime, which a batch shares: there the scheme is faster than Gmsh."""
+numpy and onnxruntime, which a batch shares: there both take about Gmsh's time or less."""
 
 LEARNING = """One NN1, NN2 and NN3, each trained on shares of its population for as many batches (epochs differ),
 measured on test contours (NN3 on random vertices in them). NN1 still gains from more contours, NN3 a little, NN2
 hardly. All still gain from longer training, whose loss (NN1's absolute, the others' squared) the table has, too: it is
-training that is missing here more than contours; the paper's 3000 to 5000 epochs are about a hundred times as long."""
+training that is missing here more than contours; the paper's 3000 to 5000 epochs are some dozens to hundreds of times
+as long."""
 
 
 def introduction(config: dict, gmsh: str) -> str:
