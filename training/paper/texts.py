@@ -46,9 +46,9 @@ of all their triangulations; so it is a little better than CDT, where the paper'
         "connections (NN3 alone)",
         """Gmsh's vertices, connected by Algorithm 3 with NN3's tables, against CDT of them. The errors grow with N_I
 from 4 on, above the paper's: NN3 is trained for some dozens of epochs, not 5000, and its loss still falls. Its one
-value per entry is q_worst, which very often is that of an element elsewhere, so that small errors decide between entries that
-should tie; the library takes no more than the element's own quality for it. Groups that were not trained have no point.
-The shipped NN3 sees one element at a time, with exact geometry, and hardly errs.""",
+value per entry is q_worst, which very often is that of an element elsewhere, so that small errors decide between
+entries that should tie; the library takes no more than the element's own quality for it. Groups that were not trained
+have no point. The shipped NN3 sees one element at a time, with exact geometry, and hardly errs.""",
     ),
     27: (
         "the whole scheme",
