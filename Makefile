@@ -14,7 +14,7 @@ help:
 	@echo "make demo       mesh a logo, an airfoil and a text in headless Blender: build/demo.blend, build/demo.png"
 	@echo "make test       ruff, the library's tests, the add-on's on the bpy wheel and in a real Blender"
 	@echo "make lint       ruff alone"
-	@echo "make bench      speed of the mesher beside Gmsh, and its memory: benchmarks/results/speed.md"
+	@echo "make bench      speed and memory of the mesher, and its domains, beside Gmsh: benchmarks/results/, docs/results/"
 	@echo "make evaluate   the shipped networks against Gmsh and the paper: docs/results/"
 	@echo "make wheels     fetch the pinned onnxruntime wheels into wheels/"
 	@echo "make extension  build/extension/*.zip, one for each platform"
@@ -43,15 +43,16 @@ test: lint wheels
 
 bench: $(VENV)/.develop
 	$(PY) -m benchmarks.speed
+	$(PY) -m benchmarks.domains
 
 evaluate: $(VENV)/.develop
 	$(PY) -m training.evaluate
 
 wheels: $(VENV)/.runtime
-	$(PY) scripts/fetch_wheels.py
+	$(PY) -m scripts.fetch_wheels
 
 extension: wheels
-	$(PY) scripts/build_extension.py
+	$(PY) -m scripts.build_extension
 
 clean:
 	rm -rf build wheels

@@ -10,14 +10,14 @@ from pathlib import Path
 
 
 def bind_to_one_core(module: str) -> None:
-    """Start ``python -m module`` again on one core, unless this process has only one.
+    """Start ``python -m module``, with its arguments, again on one core, unless this process has only one.
 
     Libraries choose their number of threads when they are imported, so that it is too late to bind them afterwards.
     """
     cores = os.sched_getaffinity(0)
     if len(cores) > 1:
         os.sched_setaffinity(0, {min(cores)})
-        os.execv(sys.executable, [sys.executable, "-m", module])
+        os.execv(sys.executable, [sys.executable, "-m", module, *sys.argv[1:]])
 
 
 def describe() -> str:

@@ -28,7 +28,7 @@ def main() -> None:
         bpy.ops.view3d.view_selected()
         view.region_3d.view_distance *= 0.5
         bpy.ops.ed.undo_push(message="Add Text")  # what Adjust Last Operation goes back to
-        bpy.ops.tessera.mesh_curve("INVOKE_DEFAULT", True)
+        bpy.ops.tessera.mesh_curve("EXEC_DEFAULT", True)
         words.hide_set(True)
         bpy.context.object.show_wire = bpy.context.object.show_all_edges = True
         bpy.context.object.select_set(False)

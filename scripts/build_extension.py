@@ -1,6 +1,8 @@
-"""Build the extension with Blender's own command: a zip for each platform, in build/extension/.
+"""Build the extension with Blender's own command: a zip for each platform of the manifest, in build/extension/.
 
-The Blender is that of the environment variable BLENDER, or else the same command as the bpy module carries it.
+Each holds the add-on, the networks, and the onnxruntime wheels of its platform, those of requirements/wheels.lock: with
+another or none of them there is no zip. The Blender is that of the environment variable BLENDER, or else the same
+command as the bpy module carries it.
 """
 
 import os
@@ -8,12 +10,16 @@ import subprocess
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
+from scripts.fetch_wheels import ROOT, unlike_the_lock
+
 OUTPUT = ROOT / "build" / "extension"
 
 
 def main() -> int:
-    """Build and validate every zip. Exit status 1 where Blender says no."""
+    """Build and validate every zip. Exit status 1 where a wheel is not the locked one, or Blender says no."""
+    if wrong := unlike_the_lock():
+        print(f"not as in requirements/wheels.lock: {', '.join(wrong)}. Run `make wheels`", file=sys.stderr)
+        return 1
     build(OUTPUT)
     for path in sorted(OUTPUT.glob("*.zip")):
         subprocess.run([*extension_command(), "validate", str(path)], check=True)
@@ -22,7 +28,7 @@ def main() -> int:
 
 
 def build(output: Path) -> None:
-    """Build into a folder, which is made; wheels/ must be filled (`make wheels`)."""
+    """Build into a folder, which is made, from wheels/ as it is."""
     output.mkdir(parents=True, exist_ok=True)
     for old in output.glob("*.zip"):
         old.unlink()

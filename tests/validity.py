@@ -6,6 +6,7 @@ exactly once: the number of triangles over a point is the winding number of the 
 """
 
 from fractions import Fraction
+from itertools import pairwise
 
 import numpy as np
 
@@ -218,3 +219,87 @@ def check_many(
     size = np.abs(np.where(inside[..., None], points - points[:, :1], 0)).max(axis=(1, 2))
     rounding = width * np.finfo(float).eps * size**2
     assert (np.abs(covered - area) <= 1e-9 * area + rounding).all(), "triangles' area is not the contour's"
+
+
+def check_partition(vertices: np.ndarray, triangles: np.ndarray) -> None:
+    """Assert that triangles are counter-clockwise and meet in whole edges, and that no vertex is spare or double."""
+    assert np.isfinite(vertices).all() and triangles.min() >= 0
+    assert len(np.unique(triangles)) == len(vertices), "vertex that no triangle uses, or does not exist"
+    assert len(np.unique(vertices, axis=0)) == len(vertices), "two vertices in one place"
+    assert positive_areas(vertices[triangles]).all(), "inverted or empty triangle"
+    boundary_edges(triangles)
+
+
+def check_regions(vertices, triangles, region, regions, keep: bool = True, tolerance: float = 3e-6) -> None:
+    """Assert that the triangles of each region cover the region's loops, exactly once.
+
+    The triangles, each counter-clockwise, meet in whole edges, so those of a region cover what the region's outline
+    goes around, as often as it does. That outline has its vertices on the loops; with `keep` it is as long as they are
+    and lies on them, so it is the loops. regions: sequence of sequences of loops; tolerance: of places, as a share of
+    the size of all.
+    """
+    check_partition(vertices, triangles)
+    size = float(np.ptp(np.concatenate([loop for loops in regions for loop in loops]), axis=0).max())
+    assert 0 <= region.min() and region.max() < len(regions)
+    for number, loops in enumerate(regions):
+        loops = [without_repeats(np.asarray(loop, dtype=float)) for loop in loops]
+        own = triangles[region == number]
+        assert len(own), f"region {number} has no triangle"
+        outline = boundary_edges(own)
+        near(vertices[np.unique(outline)], loops, tolerance * size)
+        covered = sum(polygon_area(vertices[corners]) for corners in own)
+        perimeter = sum(np.linalg.norm(loop - np.roll(loop, 1, axis=0), axis=1).sum() for loop in loops)
+        along = np.linalg.norm(vertices[outline[:, 0]] - vertices[outline[:, 1]], axis=1).sum()
+        assert along <= perimeter * (1 + 1e-5) + tolerance * size * len(outline)
+        if keep:
+            wanted = sum(abs(polygon_area(loop)) * (-1) ** depth(loop, loops) for loop in loops)
+            assert abs(covered - wanted) <= tolerance * size * perimeter, f"area of region {number}"
+            near(vertices[outline].mean(axis=1), loops, tolerance * size)
+            assert abs(along - perimeter) <= 1e-5 * perimeter + tolerance * size * len(outline)
+
+
+def near(points: np.ndarray, loops, tolerance: float) -> None:
+    """Assert that points (n, 2) are no farther from the loops' edges than the tolerance."""
+    for point in points:
+        assert min(distances(point, loop, np.roll(loop, -1, axis=0)).min() for loop in loops) <= tolerance
+
+
+def distances(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """(e,) how far a point (2,) is from edges from start to end (e, 2)."""
+    along = end - start
+    share = np.clip(np.sum((point - start) * along, axis=1) / np.maximum(np.sum(along**2, axis=1), 1e-300), 0, 1)
+    return np.linalg.norm(point - start - share[:, None] * along, axis=1)
+
+
+def check_points(vertices: np.ndarray, points, tolerance: float = 0.0) -> None:
+    """Assert that each of the points (k, 2) is a vertex."""
+    for point in np.asarray(points, dtype=float).reshape(-1, 2):
+        assert np.abs(vertices - point).max(axis=1).min() <= tolerance, f"{point} is no vertex"
+
+
+def check_line(vertices: np.ndarray, triangles: np.ndarray, line, size: float, keep: bool = False) -> None:
+    """Assert that edges of the mesh lead along a polyline (k, 2), from its start to its end, with vertices on it.
+
+    size: of the domain; keep: all the line's vertices are the mesh's; otherwise the first and the last of an open one.
+    """
+    line = np.asarray(line, dtype=float)
+    line = line[np.append(True, np.any(line[1:] != line[:-1], axis=1))]
+    sides = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    edges = {frozenset(pair) for pair in sides.tolist()}
+    stops, passed, tolerance = [], 0.0, 3e-6 * size
+    for a, b in pairwise(line):
+        length = float(np.linalg.norm(b - a))
+        share = np.clip((vertices - a) @ (b - a) / length**2, 0, 1)
+        on = np.flatnonzero(np.linalg.norm(vertices - a - share[:, None] * (b - a), axis=1) <= tolerance)
+        stops += [(passed + share[k] * length, int(k)) for k in on]
+        passed += length
+    stops.sort()
+    path = [k for n, (_, k) in enumerate(stops) if n == 0 or k != stops[n - 1][1]]
+    if np.array_equal(line[0], line[-1]):
+        path += path[:1] if path[0] != path[-1] else []
+    else:
+        assert stops[0][0] <= tolerance and stops[-1][0] >= passed - tolerance, "a line's end is no vertex"
+    assert len(path) > 1, "the line has no edge"
+    assert all(frozenset(pair) in edges for pair in pairwise(path)), "the line is not of edges"
+    if keep:
+        check_points(vertices, line, tolerance)

@@ -109,6 +109,47 @@ class Moves(nn.Module):
         return places
 
 
+class Star(nn.Module):
+    """NN2 where N_I is 1 and the contour a ring of neighbours: the place of the vertex, (B, 2).
+
+    A mean of the ring's vertices, weighed by what each has around it, so that the place turns, moves and grows with the
+    ring. It is asked for every vertex of a large mesh, again and again, so it is small.
+    """
+
+    def __init__(self, width: int = 24):
+        super().__init__()
+        self.first = nn.Linear(9, width)
+        self.second = nn.Linear(2 * width, width)
+        self.weight = nn.Linear(width, 1)
+
+    def forward(self, ring: Tensor, share: Tensor) -> Tensor:
+        """ring: (B, N + 2, 2), counter-clockwise, the last vertex before the first and the first after the last.
+
+        share: (B, N, 1), 1 over their number for real vertices, 0 for padding. Returns (B, 2).
+        """
+        here = ring[:, 1:-1]
+        centre = (here * share).sum(1, keepdim=True)
+        at = ring - centre
+        here = at[:, 1:-1]
+        size = torch.sqrt(((here * here).sum(-1, keepdim=True) * share).sum(1, keepdim=True))
+        at = at / size
+        x = torch.relu(self.first(star_features(at)))
+        x = torch.cat([x, (x * share).sum(1, keepdim=True).expand_as(x)], -1)
+        weight = self.weight(torch.relu(self.second(x)))
+        return (centre + size * (weight * share * at[:, 1:-1]).sum(1, keepdim=True)).squeeze(1)
+
+
+def star_features(ring: Tensor) -> Tensor:
+    """(B, N, 9) squared lengths and products of each of a ring's vertices, (B, N + 2, 2), and of the two beside it."""
+    before, here, after = ring[:, :-2], ring[:, 1:-1], ring[:, 2:]
+    x, y = here[..., :1], here[..., 1:]
+    crosses = [x * after[..., 1:] - y * after[..., :1], before[..., :1] * y - before[..., 1:] * x]
+    dots = [(here * other).sum(-1, keepdim=True) for other in (here, after, before)]
+    sides = [((here - other) ** 2).sum(-1, keepdim=True) for other in (after, before)]
+    squares = [(other * other).sum(-1, keepdim=True) for other in (after, before)]
+    return torch.cat(crosses + dots + sides + squares, -1)
+
+
 class NN3(nn.Module):
     """How to connect: (q_worst, q_mean) of entries of the connection table."""
 
@@ -160,4 +201,4 @@ def element_features(shape: Outline, at: Tensor, facet: Tensor, apex: Tensor, ve
     return torch.cat([shapes, torch.cat([sides, own[:, :1], beside], -1).clamp(-4, 5)], -1)
 
 
-ROLES = {"nn1": NN1, "nn2_scores": Scores, "nn2_moves": Moves, "nn3": NN3}
+ROLES = {"nn1": NN1, "nn2_scores": Scores, "nn2_moves": Moves, "nn2_star": Star, "nn3": NN3}

@@ -8,8 +8,9 @@ from dataclasses import dataclass, field, fields
 
 import numpy as np
 
-from tessera import meshing, refinement, relaxation, remeshing, triangulation
+from tessera import levels, meshing, refinement, relaxation, remeshing, triangulation
 from tessera.cavity import next_vertices
+from tessera.settings import Settings
 from tessera.transform import superimpose
 
 from . import contours
@@ -67,7 +68,7 @@ def record(domains: Sequence[Domain]) -> Record:
     with recording() as found:
         for keep in (False, True):
             loops = _apart([domain.loop for domain in domains if domain.keep == keep])
-            meshing.mesh_domains(loops, 1.0, "keep" if keep else "resample", flips=False, smooth=0)
+            meshing.mesh_domains(loops, 1.0, Settings(boundary="keep" if keep else "resample"))
     return found
 
 
@@ -83,7 +84,7 @@ def recording() -> Iterator[Record]:
     """While it lasts, the library calls through wrappers that keep what goes through; then all is as it was."""
     found = Record()
     wrappers = [
-        (meshing, "mesh_cells", lambda call: _recorded_cells(call, "cell", found)),
+        (levels, "mesh_cells", lambda call: _recorded_cells(call, "cell", found)),
         (refinement, "mesh_cells", lambda call: _recorded_cells(call, "triangle", found)),
         (remeshing, "mesh_cells", lambda call: _recorded_cells(call, "cavity", found)),
         (relaxation, "_better_places", lambda call: _recorded_stars(call, found)),
@@ -100,23 +101,23 @@ def recording() -> Iterator[Record]:
 
 
 def _recorded_cells(call: Callable, kind: str, found: Record) -> Callable:
-    def mesh_cells(points, cells, edge_length, watch):
+    def mesh_cells(points, cells, edge_length, watch, more=None):
         contour, n = _padded(points[cells]), (cells >= 0).sum(axis=1)
         found.contours.append(Pool(contour, n, edge_length, np.full(len(n), KINDS.index(kind), dtype=np.int8)))
-        return call(points, cells, edge_length, watch)
+        return call(points, cells, edge_length, watch, more)
 
     return mesh_cells
 
 
 def _recorded_stars(call: Callable, found: Record) -> Callable:
-    def better_places(vertices, stars):
+    def better_places(vertices, stars, size):
         ring = vertices[stars.ring]
         real = np.arange(ring.shape[1]) < stars.n_ring[:, None]
         lengths = np.linalg.norm(next_vertices(ring, stars.n_ring) - ring, axis=-1)
         mean = np.where(real, lengths, 0).sum(axis=1) / stars.n_ring
         kind = np.full(len(mean), KINDS.index("star"), dtype=np.int8)
         found.contours.append(Pool(_padded(ring), stars.n_ring, mean, kind))
-        return call(vertices, stars)
+        return call(vertices, stars, size)
 
     return better_places
 

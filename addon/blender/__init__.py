@@ -3,9 +3,9 @@
 Only this folder imports `bpy`. The mesher is imported where it is called, so that enabling the add-on stays quick.
 """
 
-from . import command, menus, operators
+from . import command, following, linked, menus, operators, overlay, panel, preferences
 
-_MODULES = (operators, menus, command)
+_MODULES = (preferences, linked, following, operators, menus, overlay, panel, command)
 
 
 def register() -> None:

@@ -1,56 +1,149 @@
-"""From the wire edges of a curve to its closed polylines. Arrays in, arrays out: no `bpy` here."""
+"""What is read from an object: closed loops in one plane, and what each of them brings. No `bpy` is called here."""
 
-from collections import defaultdict
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .errors import OutlineError
+from .plane import Plane, fit_plane
 
-def outline_edges(edges: np.ndarray, face_edges: np.ndarray) -> np.ndarray:
-    """The edges that bound something: wire edges, and edges of exactly one face.
+if TYPE_CHECKING:
+    import bpy
 
-    edges: (e, 2) int32 vertex indices; face_edges: the edge index at every face corner. Returns (k, 2) int32.
+NOTHING = "There is no outline in it. Draw or type something first."
+
+
+@dataclass(frozen=True)
+class Polyline:
+    """points: (k, 3) float64 in the object's space; spline: its number as the user counts it, from 1, or 0."""
+
+    points: np.ndarray
+    closed: bool
+    spline: int = 0
+    material: int = 0
+    smooth: bool = True
+
+
+@dataclass(frozen=True)
+class Part:
+    """The flat part of a mesh that loops bound.
+
+    faces: (f,) int32, those that are to be replaced; vertices: (k,) int32 for each loop, the mesh vertex at each of its
+    points, or -1 for one that is to be made on the edge between the nearest others.
     """
-    faces_at_edge = np.bincount(face_edges, minlength=len(edges))
-    return edges[faces_at_edge <= 1]
+
+    faces: np.ndarray
+    vertices: tuple[np.ndarray, ...]
 
 
-def polylines(n_vertices: int, edges: np.ndarray) -> list[tuple[np.ndarray, bool]]:
-    """Chains of edges as vertex indices, each with whether it is closed, in the order of their lowest vertex.
+@dataclass(frozen=True)
+class Outline:
+    """One plane: what one call of `tessera.mesh` takes.
 
-    edges: (e, 2) int32. A vertex without an edge is an open chain of its own. A closed chain does not repeat its first
-    vertex. Where more than two edges meet, the chain takes them in the order given: crossing outlines stay chains, and
-    the mesher's own check names the place.
+    loops: (k, 2) float64 each, in the plane and in world units, none repeating its first point; plane: between them and
+    the object's space; splines: (l,) int32, the number of the spline of each loop as the user counts it, from 1, or 0
+    for what is no spline; materials: (l,) int32, in slots; smooth: (l,) bool; slots: the object's materials; part: set
+    for a part of a mesh in Edit Mode, whose boundary must be kept.
     """
-    neighbours: dict[int, list[int]] = defaultdict(list)
-    for a, b in edges.tolist():
-        neighbours[a].append(b)
-        neighbours[b].append(a)
 
-    seen = np.zeros(n_vertices, dtype=bool)
-    chains = []
-    for seed in range(n_vertices):
-        if seen[seed]:
-            continue
-        chain, closed = _walk(seed, neighbours)
-        if not closed and neighbours[seed]:
-            # The seed may lie inside an open chain: go back to its end, and walk from there. `_walk` consumed the
-            # edges, so they are those just walked, from the seed onwards, and what lies on its other side.
-            before, _ = _walk(seed, neighbours)
-            chain = before[:0:-1] + chain
-        seen[chain] = True
-        chains.append((np.array(chain, dtype=np.int32), closed))
-    return chains
+    loops: tuple[np.ndarray, ...]
+    plane: Plane
+    splines: np.ndarray
+    materials: np.ndarray
+    smooth: np.ndarray
+    slots: tuple[bpy.types.Material | None, ...] = ()
+    part: Part | None = None
+
+    @property
+    def size(self) -> float:
+        """The longer side of the bounding box of the largest loop, in world units."""
+        return max(float(np.ptp(loop, axis=0).max()) for loop in self.loops)
+
+    def loop_near(self, place: Sequence[float]) -> int:
+        """The index of the loop that passes closest to a place (2,), such as a ContourError's."""
+        return int(np.argmin([_distance(loop, np.asarray(place)) for loop in self.loops]))
+
+    def of(self, chosen: np.ndarray) -> Outline:
+        """Only the loops of these indices (c,)."""
+        loops = tuple(self.loops[i] for i in chosen)
+        rows = {name: getattr(self, name)[chosen] for name in ("splines", "materials", "smooth")}
+        return replace(self, loops=loops, **rows)
+
+    def subdivided(self, edge_length: float) -> Outline:
+        """Long edges of a part's boundary divided evenly, so that none is much longer than edge_length.
+
+        Both parts beside an edge divide it alike, and the vertices that there are all stay.
+        """
+        pairs = [
+            _divided(loop, vertices, edge_length) for loop, vertices in zip(self.loops, self.part.vertices, strict=True)
+        ]
+        part = replace(self.part, vertices=tuple(vertices for _, vertices in pairs))
+        return replace(self, loops=tuple(loop for loop, _ in pairs), part=part)
 
 
-def _walk(seed: int, neighbours: dict[int, list[int]]) -> tuple[list[int], bool]:
-    """Follow edges from `seed` and remove them as they are walked, until there is none or the seed is back."""
-    chain = [seed]
-    here = seed
-    while neighbours[here]:
-        ahead = neighbours[here].pop(0)
-        neighbours[ahead].remove(here)
-        if ahead == seed:
-            return chain, True
-        chain.append(ahead)
-        here = ahead
-    return chain, False
+def make_outline(
+    polylines: Sequence[Polyline],
+    to_world: np.ndarray,
+    slots: tuple[bpy.types.Material | None, ...] = (),
+    up: Sequence[float] = (0.0, 0.0, 1.0),
+) -> Outline:
+    """Closed polylines of one plane.
+
+    to_world: (3, 3), the linear part of the object's world matrix; up: the side of the plane that the mesh faces.
+    Raises OutlineError: "open", "too-few-points", "not-planar", "zero-area", "not-finite".
+    """
+    if not polylines:
+        raise OutlineError("too-few-points", NOTHING)
+    points = np.concatenate([polyline.points for polyline in polylines])
+    tolerance = 1e-6 * float(np.ptp(points, axis=0).max())
+    loops = [_closed(polyline, tolerance) for polyline in polylines]
+    plane = fit_plane(np.concatenate(loops), to_world, up)
+    return Outline(
+        tuple(plane.flatten(loop) for loop in loops),
+        plane,
+        np.array([polyline.spline for polyline in polylines], dtype=np.int32),
+        np.array([polyline.material for polyline in polylines], dtype=np.int32),
+        np.array([polyline.smooth for polyline in polylines], dtype=bool),
+        slots,
+    )
+
+
+def _closed(polyline: Polyline, tolerance: float) -> np.ndarray:
+    """The points (k, 3) of a closed polyline; one whose ends meet is closed."""
+    points, name = polyline.points, f"Spline {polyline.spline}" if polyline.spline else "An outline"
+    if len(points) < 3:
+        count = "1 point" if len(points) == 1 else f"{len(points)} points"
+        message = f"{name} has {count}, and an outline needs at least 3. Add points, or delete it."
+        raise OutlineError("too-few-points", message, points[0] if len(points) else None, polyline.spline)
+    if polyline.closed:
+        return points
+    if np.abs(points[0] - points[-1]).max() > tolerance:
+        remedy = "with Curve > Toggle Cyclic" if polyline.spline else "so that its edges lead back to where they start"
+        message = f"{name} is open. Close it in Edit Mode, {remedy}."
+        raise OutlineError("open", message, points[0], polyline.spline)
+    if len(points) < 4:
+        message = f"{name} has 2 different points, and an outline needs at least 3. Add points, or delete it."
+        raise OutlineError("too-few-points", message, points[0], polyline.spline)
+    return points[:-1]
+
+
+def _distance(loop: np.ndarray, place: np.ndarray) -> float:
+    """How far a place (2,) is from a loop (k, 2)."""
+    along = np.roll(loop, -1, axis=0) - loop
+    squared = np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
+    fraction = np.clip(((place - loop) * along).sum(axis=1) / squared, 0.0, 1.0)
+    return float(np.linalg.norm(loop + fraction[:, None] * along - place, axis=1).min())
+
+
+def _divided(loop: np.ndarray, vertices: np.ndarray, edge_length: float) -> tuple[np.ndarray, np.ndarray]:
+    """The points (k, 2) of a loop, and those that divide its edges evenly; the vertices (k,), -1 for the new ones."""
+    following = np.roll(loop, -1, axis=0)
+    count = np.maximum(np.rint(np.linalg.norm(following - loop, axis=1) / edge_length), 1).astype(int)
+    edge = np.repeat(np.arange(len(loop)), count)
+    step = np.arange(len(edge)) - (np.cumsum(count) - count)[edge]
+    points = loop[edge] + (step / count[edge])[:, None] * (following - loop)[edge]
+    return points, np.where(step == 0, vertices[edge], -1).astype(np.int32)

@@ -1,10 +1,11 @@
 """The plane of a curve: 3-D points of an object to 2-D points at true (world) proportion, and back. No `bpy` here."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from ..tessera.errors import ContourError
+from .errors import OutlineError
 
 # How far a point may lie from the plane, as a fraction of the curve's extent. Blender stores single precision, and
 # a curve drawn by hand on a surface that looks flat is a good deal farther off than this.
@@ -29,47 +30,72 @@ class Plane:
 
     def lift(self, points: np.ndarray) -> np.ndarray:
         """(n, 2) in the plane to (n, 3) float64 in the object's space."""
-        return self.origin + np.linalg.solve(self.metric, points.T).T @ self.axes
+        # Back substitution; a solver would start threads for it.
+        second = points[:, 1] / self.metric[1, 1]
+        first = (points[:, 0] - self.metric[0, 1] * second) / self.metric[0, 0]
+        return self.origin + np.column_stack([first, second]) @ self.axes
 
 
-def fit_plane(points: np.ndarray, to_world: np.ndarray) -> Plane:
-    """The plane of a curve's points, seen from the curve's own +Z side.
+def inverse(matrix: np.ndarray) -> np.ndarray:
+    """The inverse of an object's world matrix (4, 4). Raises OutlineError "zero-area" where its scale is zero."""
+    if np.linalg.det(matrix[:3, :3]) == 0.0:
+        raise OutlineError("zero-area", "Its scale is zero along an axis. Give it a scale.")
+    return np.linalg.inv(matrix)
 
-    points: (n, 3) float64 in the object's space; to_world: (3, 3), the linear part of the object's world matrix.
-    Raises ContourError: "not-finite", "not-planar", "zero-area" (all points on a line, or a scale of zero).
+
+def fit_plane(points: np.ndarray, to_world: np.ndarray, up: Sequence[float] = (0.0, 0.0, 1.0)) -> Plane:
+    """The plane of a curve's points, seen from its upper side.
+
+    points: (n, 3) float64 in the object's space; to_world: (3, 3), the linear part of the object's world matrix; up:
+    the direction that the upper side faces. Raises OutlineError: "not-finite", "not-planar", "zero-area" (all points
+    on a line, or a scale of zero).
     """
-    if not np.isfinite(points).all() or not np.isfinite(to_world).all():
-        raise ContourError("not-finite", "A coordinate or the transform is not a finite number. Correct it.")
+    if not np.isfinite(points).all():
+        bad = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
+        raise OutlineError("not-finite", f"A coordinate of point {bad + 1} is not a finite number. Correct it.")
+    if not np.isfinite(to_world).all():
+        raise OutlineError("not-finite", "Its transform has a number that is not finite. Correct it.")
     low, high = points.min(axis=0), points.max(axis=0)
     extent = float(np.linalg.norm(high - low))
-    if high[2] - low[2] <= 1e-6 * extent:
+    if high[2] - low[2] <= 1e-6 * extent and up[2] > 0.0:
         # The usual case keeps the object's own X and Y, and its coordinates to the last bit.
         origin, axes = np.array([0.0, 0.0, points[0, 2]]), np.eye(2, 3)
     else:
         origin = points.mean(axis=0)
-        axes = _principal_axes(points - origin, extent)
+        axes = _principal_axes(points, origin, extent, np.asarray(up, dtype=np.float64))
     return Plane(origin, axes, _metric(to_world @ axes.T))
 
 
-def _principal_axes(centred: np.ndarray, extent: float) -> np.ndarray:
+def _principal_axes(points: np.ndarray, origin: np.ndarray, extent: float, up: np.ndarray) -> np.ndarray:
+    centred = points - origin
     _, singular, rows = np.linalg.svd(centred, full_matrices=False)
     if len(singular) < 3 or singular[1] <= 1e-6 * singular[0]:
-        raise ContourError("zero-area", "All points lie on one line. Give the outline an area.")
-    off = float(np.abs(centred @ rows[2]).max())
+        raise OutlineError("zero-area", "All points lie on one line. Give the outline an area.", points[0])
+    height = np.abs(centred @ rows[2])
+    off, farthest = float(height.max()), points[height.argmax()]
     if off > TOLERANCE * extent:
-        raise ContourError(
+        raise OutlineError(
             "not-planar",
             f"It is not planar: a point lies {off:.3g} off the best plane, and {TOLERANCE * extent:.3g} is allowed. "
             "Flatten it, for example by scaling its points to 0 along one axis in Edit Mode.",
+            farthest,
         )
     normal = rows[2]
-    # Towards the curve's +Z; a curve that stands upright faces -Y, then +X, as Blender's Front and Right views do.
-    for toward in ([0.0, 0.0, 1.0], [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]):
+    # Towards `up`; a curve that stands upright faces -Y, then +X, as Blender's Front and Right views do.
+    for toward in (up / np.linalg.norm(up), [0.0, -1.0, 0.0], [1.0, 0.0, 0.0]):
         side = float(normal @ toward)
         if abs(side) > 1e-6:
             normal = normal * np.sign(side)
             break
-    return np.stack([rows[0], np.cross(normal, rows[0])])
+    return np.stack(_across(normal))
+
+
+def _across(normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The object's X as it lies in the plane, or Y where X stands on it, and the direction to the left of that."""
+    first = np.eye(3)[0 if abs(normal[0]) < 0.9 else 1]
+    first = first - (first @ normal) * normal
+    first /= np.linalg.norm(first)
+    return first, np.cross(normal, first)
 
 
 def _metric(world_axes: np.ndarray) -> np.ndarray:
@@ -77,5 +103,5 @@ def _metric(world_axes: np.ndarray) -> np.ndarray:
     _, metric = np.linalg.qr(world_axes)
     metric = metric * np.sign(np.diagonal(metric))[:, None]
     if abs(metric[1, 1]) <= 1e-12 * np.abs(metric).max() or abs(metric[0, 0]) <= 1e-12 * np.abs(metric).max():
-        raise ContourError("zero-area", "Its scale is zero in its own plane. Give it a scale.")
+        raise OutlineError("zero-area", "Its scale is zero in its own plane. Give it a scale.")
     return metric

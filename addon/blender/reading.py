@@ -1,123 +1,102 @@
-"""From a curve or text object, as modifiers and animation leave it, to planar loops."""
+"""From an object, as modifiers and animation leave it, to outlines: the one way in. Nothing of the scene is changed."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import replace
 
 import bpy
 import numpy as np
 
-from ..tessera.errors import ContourError
-from .outline import outline_edges, polylines
-from .plane import Plane, fit_plane
-
-# Modifiers that Blender always applies to control points, whether or not "Apply on Spline" is set.
-_ON_SPLINE = frozenset({"HOOK", "SOFT_BODY", "MESH_DEFORM"})
-
-_NOTHING = "There is no outline in it. Draw or type something first."
-
-
-@dataclass(frozen=True)
-class Outline:
-    """loops: (k, 2) float64 each, in the plane and in world units, none repeating its first point."""
-
-    loops: tuple[np.ndarray, ...]
-    plane: Plane
-
-    @property
-    def size(self) -> float:
-        """The longer side of the bounding box of the largest loop, in world units."""
-        return max(float(np.ptp(loop, axis=0).max()) for loop in self.loops)
+from .errors import OutlineError
+from .kinds import shows_collection
+from .outline import NOTHING, Outline, Polyline, make_outline
+from .plane import inverse
+from .reading_curve import read_curve
+from .reading_instances import collection_objects, has_instances, node_meshes
+from .reading_mesh import read_mesh
+from .reading_part import read_parts
+from .reading_strokes import read_curves, read_grease_pencil, read_old_grease_pencil
+from .touching import apart
 
 
-def read_outline(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Outline:
-    """The closed polylines of an object, at the resolution that Blender shows.
+def read_outlines(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> list[Outline]:
+    """The closed outlines of an object, at the resolution that Blender shows, all in the object's own space.
 
-    A fill, extrusion or bevel is left out: the outline is what is meshed, holes and islands by the even-odd rule as in
-    Blender's own fill, but of splines of all materials together. Raises ContourError: "open", "not-planar",
+    Usually one, with holes and islands by the even-odd rule as in Blender's own fill, but of splines of all materials
+    together. More than one where there are instances, a mesh's flat parts selected in Edit Mode, or splines that touch:
+    each is to be meshed by itself, and all are to be written together. Raises OutlineError: "open", "not-planar",
     "too-few-points", "zero-area", "not-finite".
     """
+    if obj.type == "MESH" and obj.mode == "EDIT":
+        return read_parts(obj)
+    if obj.type == "CURVE" and obj.mode == "EDIT" and obj.modifiers:
+        _bring_edits(obj, depsgraph)
     evaluated = obj.evaluated_get(depsgraph)
-    with _wire(evaluated, depsgraph) as mesh:
-        if mesh is None:  # what Blender makes of an empty text
-            raise ContourError("too-few-points", _NOTHING)
-        points = np.empty((len(mesh.vertices), 3), dtype=np.float32)
-        edges = np.empty((len(mesh.edges), 2), dtype=np.int32)
-        face_edges = np.empty(len(mesh.loops), dtype=np.int32)
-        mesh.vertices.foreach_get("co", points.ravel())
-        mesh.edges.foreach_get("vertices", edges.ravel())
-        mesh.loops.foreach_get("edge_index", face_edges)
-    points = points.astype(np.float64)
-    chains = _closed_chains(points, _chains(len(points), edges, face_edges))
-    used = np.concatenate([points[chain] for chain in chains])
-    plane = fit_plane(used, np.array(evaluated.matrix_world.to_3x3(), dtype=np.float64))
-    return Outline(tuple(plane.flatten(points[chain]) for chain in chains), plane)
+    world = np.array(evaluated.matrix_world, dtype=np.float64)
+    if not np.isfinite(world).all():
+        raise OutlineError("not-finite", "Its transform has a number that is not finite. Correct it.")
+    outlines = []
+    if not shows_collection(obj):
+        polylines = _own(evaluated, depsgraph)
+        if polylines or not has_instances(obj):
+            outlines += apart(make_outline(polylines, world[:3, :3], slots(obj)))
+    if has_instances(obj):
+        outlines += _instances(evaluated, depsgraph, world)
+    if not outlines:
+        raise OutlineError("too-few-points", NOTHING)
+    return outlines
 
 
-def _chains(n_points: int, edges: np.ndarray, face_edges: np.ndarray) -> list[tuple[np.ndarray, bool]]:
-    """Chains of the edges that bound something; vertices inside a face are no chain."""
-    bounding = outline_edges(edges, face_edges)
-    chains = polylines(n_points, bounding)
-    if len(face_edges):
-        chains = [(chain, closed) for chain, closed in chains if len(chain) > 1]
-    return chains
+def slots(obj: bpy.types.Object) -> tuple[bpy.types.Material | None, ...]:
+    """The materials of an object's slots."""
+    return tuple(slot.material for slot in obj.material_slots)
 
 
-def _closed_chains(points: np.ndarray, chains: list[tuple[np.ndarray, bool]]) -> list[np.ndarray]:
-    """Every chain closed, or a ContourError that counts splines as Blender lists them, from 1."""
-    if not chains:
-        raise ContourError("too-few-points", _NOTHING)
-    tolerance = 1e-6 * float(np.ptp(points, axis=0).max())
-    closed_chains = []
-    for number, (chain, closed) in enumerate(chains, start=1):
-        if len(chain) < 3:
-            count = "1 point" if len(chain) == 1 else f"{len(chain)} points"
-            raise ContourError(
-                "too-few-points",
-                f"Spline {number} has {count}, and an outline needs at least 3. Add points, or delete it.",
-            )
-        if not closed:
-            first, last = points[chain[0]], points[chain[-1]]
-            if np.abs(first - last).max() > tolerance:
-                raise ContourError(
-                    "open",
-                    f"Spline {number} is open. Close it in Edit Mode, with Curve > Toggle Cyclic.",
-                    place=(float(first[0]), float(first[1])),
-                )
-            chain = chain[:-1]
-        closed_chains.append(chain)
-    return closed_chains
+def _bring_edits(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
+    """Have what is being edited evaluated: Blender itself does so only when Edit Mode ends."""
+    obj.update_from_editmode()
+    obj.data.update_tag()
+    depsgraph.update()
 
 
-@contextmanager
-def _wire(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Iterator[bpy.types.Mesh | None]:
-    """A temporary mesh of the outline's edges; nothing of it is left afterwards."""
-    if _has_mesh_modifiers(evaluated):
-        # These work on what Blender tessellates, fill included; the borders of the faces are the outline then.
-        mesh = evaluated.to_mesh()
-        try:
-            yield mesh
-        finally:
-            evaluated.to_mesh_clear()
-        return
-    curve = evaluated.to_curve(depsgraph, apply_modifiers=True).copy()
-    evaluated.to_curve_clear()
-    curve.dimensions = "3D"
-    curve.extrude = curve.bevel_depth = 0.0
-    curve.bevel_mode = "ROUND"
-    curve.bevel_object = None
-    holder = bpy.data.objects.new(curve.name, curve)
-    try:
-        yield holder.to_mesh()
-    finally:
-        holder.to_mesh_clear()
-        bpy.data.objects.remove(holder)
-        bpy.data.curves.remove(curve)
+def _own(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> list[Polyline]:
+    """The polylines of one evaluated object's own geometry."""
+    if evaluated.type in {"CURVE", "FONT"}:
+        return read_curve(evaluated, depsgraph)
+    if evaluated.type == "CURVES":
+        return read_curves(evaluated)
+    if evaluated.type == "GREASEPENCIL":
+        return read_grease_pencil(evaluated, np.array(evaluated.matrix_world, dtype=np.float64))
+    if evaluated.type == "GPENCIL":
+        return read_old_grease_pencil(evaluated)
+    if evaluated.type == "MESH":
+        return read_mesh(evaluated)
+    return []
 
 
-def _has_mesh_modifiers(evaluated: bpy.types.Object) -> bool:
-    """Whether a modifier works on the tessellated curve, and not on control points."""
-    modifiers = list(evaluated.modifiers)
-    on_spline = [i for i, m in enumerate(modifiers) if m.use_apply_on_spline or m.type in _ON_SPLINE]
-    after = modifiers[on_spline[-1] + 1 :] if on_spline else modifiers
-    return any(modifier.show_viewport for modifier in after)
+def _instances(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph, world: np.ndarray) -> list[Outline]:
+    """The outlines of everything that the object places, in its own space."""
+    to_object, outlines = inverse(world), []
+    if shows_collection(evaluated):
+        for shown, matrix in collection_objects(evaluated, depsgraph):
+            try:
+                outlines += _placed(_own(shown, depsgraph), to_object @ matrix, world, slots(shown.original))
+            except OutlineError as error:
+                raise OutlineError(error.reason, f"In '{shown.name}': {error}", error.point, error.spline) from error
+    else:
+        for polylines, matrix, materials in node_meshes(evaluated, depsgraph):
+            outlines += _placed(polylines, to_object @ matrix, world, materials)
+    return outlines
+
+
+def _placed(
+    polylines: Sequence[Polyline],
+    matrix: np.ndarray,
+    world: np.ndarray,
+    materials: tuple[bpy.types.Material | None, ...],
+) -> list[Outline]:
+    """Polylines of another object's space, brought here by a matrix (4, 4) that keeps the side that they face."""
+    if not polylines:
+        return []
+    moved = [replace(p, points=p.points @ matrix[:3, :3].T + matrix[:3, 3]) for p in polylines]
+    up = inverse(matrix)[2, :3]
+    return apart(make_outline(moved, world[:3, :3], materials, up))

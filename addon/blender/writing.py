@@ -1,54 +1,124 @@
-"""A mesh object in the place of a curve: same transform, parent, collections and materials."""
+"""Mesh objects from meshed outlines: beside their source, in its place, of several sources, or into the same again."""
+
+from collections.abc import Sequence
 
 import bpy
 import numpy as np
 
+from .copying import copy_custom_properties, copy_object, link_beside
+from .geometry import Geometry, Piece, join
+from .plane import inverse
+from .writing_part import write_part
 
-def write_mesh(source: bpy.types.Object, vertices: np.ndarray, triangles: np.ndarray) -> bpy.types.Object:
+__all__ = ["Piece", "write_again", "write_in_place", "write_joined", "write_mesh", "write_part"]
+
+BOUNDARY = "Boundary"
+QUALITY = "element_quality"
+UV_MAP = "UVMap"
+
+
+def write_mesh(source: bpy.types.Object, pieces: Sequence[Piece]) -> bpy.types.Object:
     """A new mesh object beside `source`, which stays as it is.
 
-    vertices: (n, 3) in the source object's space; triangles: (m, 3) int32.
+    It has the source's transform, parent, collections, materials, custom properties and display.
     """
-    name = f"{source.name} Mesh"
-    data = _mesh_data(name, vertices, triangles)
-    for slot in source.material_slots:
-        data.materials.append(slot.material)
-    obj = bpy.data.objects.new(name, data)
-    _copy_transform(source, obj)
-    for collection in _collections(source):
-        collection.objects.link(obj)
+    obj = _new_object(f"{source.name} Mesh", source, join(pieces))
+    copy_object(source, obj)
+    link_beside(source, obj)
     return obj
 
 
-def _mesh_data(name: str, vertices: np.ndarray, triangles: np.ndarray) -> bpy.types.Mesh:
-    n_triangles = len(triangles)
+def write_joined(parts: Sequence[tuple[bpy.types.Object, Sequence[Piece]]]) -> bpy.types.Object:
+    """One new mesh object of several sources, beside the first and with all that this has; the sources stay."""
+    first = parts[0][0]
+    to_first = inverse(np.array(first.matrix_world, dtype=np.float64))
+    pieces, placing = [], []
+    for source, own in parts:
+        matrix = None if source == first else to_first @ np.array(source.matrix_world, dtype=np.float64)
+        pieces += own
+        placing += [matrix] * len(own)
+    obj = _new_object(f"{first.name} Mesh", first, join(pieces, placing))
+    copy_object(first, obj)
+    link_beside(first, obj)
+    return obj
+
+
+def write_in_place(source: bpy.types.Object, pieces: Sequence[Piece]) -> bpy.types.Object:
+    """The object as a mesh: what refers to it refers to the mesh object, which has its name and all that it had.
+
+    Its modifiers are in the mesh, as in Blender's own Convert; its old data go where no other object has them. A mesh
+    object stays the same object.
+    """
+    geometry, old = join(pieces), source.data
+    if source.type == "MESH":
+        _fill(source, geometry, _new_data(source.name, old))
+        source.modifiers.clear()
+        name = old.name
+        _drop(old)
+        source.data.name = name
+        return source
+    name, data_name = source.name, source.name if old is None else old.name
+    source.name = f"{name} (replaced)"
+    obj = _new_object(name, source, geometry)
+    copy_object(source, obj, everything=True)
+    source.user_remap(obj)  # collections, children, constraints, drivers: all that knew the source
+    bpy.data.objects.remove(source)
+    _drop(old)
+    obj.name, obj.data.name = name, data_name
+    return obj
+
+
+def write_again(target: bpy.types.Object, pieces: Sequence[Piece]) -> None:
+    """New geometry into a mesh object: its transform, modifiers, custom properties, and materials stay.
+
+    Where it has no material, it gets those of the pieces.
+    """
+    geometry = join(pieces)
+    target.data.clear_geometry()
+    _fill(target, geometry, target.data)
+
+
+def _new_object(name: str, source: bpy.types.Object, geometry: Geometry) -> bpy.types.Object:
+    data = _new_data(name, source.data)
+    obj = bpy.data.objects.new(name, data)
+    _fill(obj, geometry, data)
+    return obj
+
+
+def _new_data(name: str, source: bpy.types.ID | None) -> bpy.types.Mesh:
+    """An empty mesh with the custom properties of the source's data."""
     data = bpy.data.meshes.new(name)
-    data.vertices.add(len(vertices))
-    data.vertices.foreach_set("co", np.ascontiguousarray(vertices, dtype=np.float32).ravel())
-    data.loops.add(3 * n_triangles)
-    data.loops.foreach_set("vertex_index", np.ascontiguousarray(triangles, dtype=np.int32).ravel())
-    data.polygons.add(n_triangles)
-    data.polygons.foreach_set("loop_start", np.arange(0, 3 * n_triangles, 3, dtype=np.int32))
-    data.update(calc_edges=True)
+    if source is not None:
+        copy_custom_properties(source, data)
     return data
 
 
-def _copy_transform(source: bpy.types.Object, obj: bpy.types.Object) -> None:
-    obj.parent = source.parent
-    obj.parent_type = source.parent_type
-    obj.parent_bone = source.parent_bone
-    obj.parent_vertices = source.parent_vertices
-    obj.matrix_parent_inverse = source.matrix_parent_inverse
-    obj.rotation_mode = source.rotation_mode
-    for channel in ("location", "rotation_euler", "rotation_quaternion", "rotation_axis_angle", "scale"):
-        setattr(obj, channel, getattr(source, channel))
-        if channel != "rotation_axis_angle":
-            setattr(obj, f"delta_{channel}", getattr(source, f"delta_{channel}"))
-    for constraint in source.constraints:
-        obj.constraints.copy(constraint)
+def _fill(obj: bpy.types.Object, geometry: Geometry, data: bpy.types.Mesh) -> None:
+    """Put geometry into an empty mesh, and make it the object's."""
+    n_triangles = len(geometry.triangles)
+    data.vertices.add(len(geometry.vertices))
+    data.vertices.foreach_set("co", np.ascontiguousarray(geometry.vertices, dtype=np.float32).ravel())
+    data.loops.add(3 * n_triangles)
+    data.loops.foreach_set("vertex_index", np.ascontiguousarray(geometry.triangles, dtype=np.int32).ravel())
+    data.polygons.add(n_triangles)
+    data.polygons.foreach_set("loop_start", np.arange(0, 3 * n_triangles, 3, dtype=np.int32))
+    if not len(data.materials):
+        for material in geometry.slots:
+            data.materials.append(material)
+    data.polygons.foreach_set("material_index", np.minimum(geometry.materials, max(len(data.materials) - 1, 0)))
+    data.polygons.foreach_set("use_smooth", geometry.smooth)
+    data.update(calc_edges=True)
+    uv = data.uv_layers.new(name=UV_MAP, do_init=False)
+    uv.uv.foreach_set("vector", np.ascontiguousarray(geometry.uv, dtype=np.float32).ravel())
+    quality = data.attributes.new(QUALITY, "FLOAT", "FACE")
+    quality.data.foreach_set("value", geometry.quality.astype(np.float32))
+    if obj.data != data:
+        obj.data = data
+    group = obj.vertex_groups.get(BOUNDARY) or obj.vertex_groups.new(name=BOUNDARY)
+    group.add(geometry.boundary.tolist(), 1.0, "REPLACE")
 
 
-def _collections(source: bpy.types.Object) -> list[bpy.types.Collection]:
-    """The source's collections; where none can be linked to (they are a library's), the scene's own."""
-    editable = [collection for collection in source.users_collection if collection.library is None]
-    return editable or [bpy.context.scene.collection]
+def _drop(data: bpy.types.ID | None) -> None:
+    """Remove data that nothing uses any more."""
+    if data is not None and data.users == 0:
+        bpy.data.batch_remove([data])

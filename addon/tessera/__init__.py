@@ -9,14 +9,18 @@ True
 from .allocation import keep_freed_memory
 from .errors import ContourError
 from .mesh import Mesh, Report
-from .meshing import mesh, mesh_contour, mesh_many
+from .meshing import mesh, mesh_contour, mesh_in_steps, mesh_many, mesh_regions
 from .quality import element_quality
+from .runtime import RuntimeProblem
 from .sizing import by_curvature, by_distance, by_thickness, from_values, smallest
+from .steps import Progress
 
 __all__ = [
     "ContourError",
     "Mesh",
+    "Progress",
     "Report",
+    "RuntimeProblem",
     "by_curvature",
     "by_distance",
     "by_thickness",
@@ -24,7 +28,9 @@ __all__ = [
     "from_values",
     "mesh",
     "mesh_contour",
+    "mesh_in_steps",
     "mesh_many",
+    "mesh_regions",
     "smallest",
 ]
 

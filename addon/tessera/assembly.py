@@ -7,21 +7,26 @@ from collections.abc import Callable
 import numpy as np
 
 from .cavity import next_vertices
-from .scheme import mesh_contours
+from .scheme import contours_in_steps
+from .steps import Steps
 from .stopwatch import Stopwatch
 
 
 def mesh_cells(
-    points: np.ndarray, cells: np.ndarray, edge_length: np.ndarray, watch: Stopwatch
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    points: np.ndarray,
+    cells: np.ndarray,
+    edge_length: np.ndarray,
+    watch: Stopwatch,
+    more: np.ndarray | None = None,
+) -> Steps[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
     """Put every cell through the scheme.
 
     points: (p, 2); cells: (c, N) int, counter-clockwise vertex numbers, padded with -1, 3 to 16 each; edge_length:
-    (c,). Returns vertices (n, 2), the points first and then the inner vertices; triangles (m, 3) int64; the cell of
-    each triangle (m,); fallbacks of each cell (c,).
+    (c,); more: (c,) inner vertices more than NN1 asks for. Returns vertices (n, 2), the points first and then the inner
+    vertices; triangles (m, 3) int64; the cell of each triangle (m,); fallbacks of each cell (c,).
     """
     n_contour = (cells >= 0).sum(axis=1)
-    meshes = mesh_contours(points[np.maximum(cells, 0)], n_contour, edge_length, watch)
+    meshes = yield from contours_in_steps(points[np.maximum(cells, 0)], n_contour, edge_length, watch, more=more)
     row, k = np.nonzero(np.arange(meshes.inner.shape[1]) < meshes.n_inner[:, None])
     width = int((n_contour + meshes.n_inner).max(initial=3))
     number = np.zeros((len(cells), width), dtype=np.int64)

@@ -39,9 +39,10 @@ def resample_loops(
     without it each loop is a domain of its own. corner_angle: in radians.
 
     The vertices lie on the given polyline. Corners (turning by more than the corner angle) stay; between two of them
-    are as many edges as come nearest to `edge_length`, equally long along the polyline, or as long as it is there. A
-    loop without corners starts at its leftmost vertex, wherever its list starts. Where such spacing would make polygons
-    meet, or put one inside another or out of it that was not, given vertices are inserted until it does not.
+    are as many edges as come near `edge_length`, a number that is easily halved if there are many, equally long along
+    the polyline, or as long as it is there. A loop without corners starts at its leftmost vertex, wherever its list
+    starts. Where such spacing would make polygons meet, or put one inside another or out of it that was not, given
+    vertices are inserted until it does not.
     """
     length = np.array([len(loop) for loop in loops])
     group = np.arange(len(loops)) if domain is None else np.asarray(domain)
@@ -49,12 +50,26 @@ def resample_loops(
     # One loop after the other: running sums must not depend on what else is in the batch.
     ends = np.cumsum(length)[:-1]
     if callable(edge_length):
-        knots = _knots(points, length, group, edge_length)
+        knots = knots_of(points, points[neighbours(length)[1]], length, group, edge_length)
     else:
         edge_length = np.broadcast_to(np.asarray(edge_length, dtype=np.float64), len(loops))
-        knots = [_vertices_as_knots(*one) for one in zip(np.split(points, ends), edge_length, strict=True)]
-    positions = [_even_spacing(*one) for one in zip(np.split(breaks, ends), *zip(*knots, strict=True), strict=True)]
+        closed = (np.concatenate([part, part[:1]]) for part in np.split(points, ends))
+        knots = [vertices_as_knots(*one) for one in zip(closed, edge_length, strict=True)]
+    positions = [resampled_places(*one) for one in zip(np.split(breaks, ends), *zip(*knots, strict=True), strict=True)]
     loop, position = np.repeat(np.arange(len(loops)), [len(p) for p in positions]), np.concatenate(positions)
+    samples, loop, _ = until_simple(points, length, loop, position, group)
+    return np.split(samples, np.cumsum(np.bincount(loop))[:-1])
+
+
+def until_simple(
+    points: np.ndarray, length: np.ndarray, loop: np.ndarray, position: np.ndarray, group: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """New vertices for simple loops, and as many of the given ones as it takes for them to be simple and nested again.
+
+    points (n, 2): of loops of `length` (m,), one behind the other; loop, position: (v,) the new vertices, by the number
+    of the edge that each lies on plus the share of it before them, ascending; group: (m,) loops of one domain. Returns
+    the vertices (w, 2) and their loops and positions (w,).
+    """
     rounds = 0
     while True:
         samples = _points_at(points, length, loop, position)
@@ -66,7 +81,7 @@ def resample_loops(
             extra_loop = np.repeat(hopeless, length[hopeless])
             extra_position = np.concatenate([np.arange(n, dtype=float) for n in length[hopeless]])
         elif len(extra_loop) == 0:
-            return np.split(samples, np.cumsum(np.bincount(loop))[:-1])
+            return samples, loop, position
         loop, position = np.concatenate([loop, extra_loop]), np.concatenate([position, extra_position])
         order = np.lexsort((position, loop))
         loop, position = loop[order], position[order]
@@ -76,9 +91,7 @@ def resample_loops(
 def _from_a_corner(points: np.ndarray, length: np.ndarray, corner_angle: float) -> tuple[np.ndarray, np.ndarray]:
     """The loops' points turned to start at a corner, or at the leftmost vertex; and which of them end an arc."""
     before, after = neighbours(length)
-    came, goes = points - points[before], points[after] - points
-    turning = np.arctan2(came[:, 0] * goes[:, 1] - came[:, 1] * goes[:, 0], np.sum(came * goes, axis=1))
-    corner = np.abs(turning) > corner_angle
+    corner = np.abs(turning_angles(points, before, after)) > corner_angle
     loop = np.repeat(np.arange(len(length)), length)
     first = np.cumsum(length) - length
     start = np.lexsort((points[:, 1], points[:, 0], ~corner, loop))[first] - first
@@ -88,21 +101,31 @@ def _from_a_corner(points: np.ndarray, length: np.ndarray, corner_angle: float) 
     return points, corner
 
 
-def _vertices_as_knots(points: np.ndarray, edge_length: float) -> tuple[np.ndarray, np.ndarray, float]:
-    """Positions along a loop (k + 1,), the last where it closes, length up to each (k + 1,), that of an edge."""
-    length = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
-    return np.arange(len(points) + 1.0), np.concatenate([[0.0], np.cumsum(length)]), edge_length
+def turning_angles(points: np.ndarray, before: np.ndarray, after: np.ndarray) -> np.ndarray:
+    """By how much loops turn at each of their points (n, 2), in radians, to the left: (n,)."""
+    came, goes = points - points[before], points[after] - points
+    return np.arctan2(came[:, 0] * goes[:, 1] - came[:, 1] * goes[:, 0], np.sum(came * goes, axis=1))
 
 
-def _knots(points, length, group, wanted: Callable) -> list[tuple[np.ndarray, np.ndarray, float]]:
-    """`_vertices_as_knots` of all loops for a function of points and domains: the integral of 1 / wanted along them."""
-    _, after = neighbours(length)
-    start, end = points, points[after]
+def vertices_as_knots(points: np.ndarray, edge_length: float) -> tuple[np.ndarray, np.ndarray, float]:
+    """Positions along a polyline (k + 1, 2), its vertices' numbers; length up to each (k + 1,); that of an edge."""
+    length = np.linalg.norm(points[1:] - points[:-1], axis=1)
+    return np.arange(len(points) + 0.0), np.concatenate([[0.0], np.cumsum(length)]), edge_length
+
+
+def knots_of(
+    start: np.ndarray, end: np.ndarray, length: np.ndarray, group: np.ndarray, wanted: Callable
+) -> list[tuple[np.ndarray, np.ndarray, float]]:
+    """`vertices_as_knots` for a function of points and domains: the integral of 1 / wanted along polylines.
+
+    start, end: (n, 2) of all edges, length (m,) of which each polyline has; group: (m,) its domain.
+    """
     first = np.cumsum(length) - length
     loop = np.repeat(np.arange(len(length)), length)
-    position = np.arange(len(points)) - first[loop] + 0.0
-    size = np.maximum.reduceat(np.abs(points - points[first][loop]).max(axis=1), first)
-    share = np.ones(len(points))
+    position = np.arange(len(start)) - first[loop] + 0.0
+    away = np.maximum(*(np.abs(ends - start[first][loop]).max(axis=1) for ends in (start, end)))
+    size = np.maximum.reduceat(away, first)
+    share = np.ones(len(start))
     parts = np.ceil(np.linalg.norm(end - start, axis=1) / (_LONGEST_PIECE * size[loop]))
     found = []
     while len(start):
@@ -127,16 +150,30 @@ def _knots(points, length, group, wanted: Callable) -> list[tuple[np.ndarray, np
     ]
 
 
-def _even_spacing(breaks: np.ndarray, position: np.ndarray, passed: np.ndarray, an_edge: float) -> np.ndarray:
-    """Places (n,) of one loop's new vertices: the number of the edge they lie on plus the share of it before them.
+def count_edges(passed: np.ndarray, fewest: int = 3) -> np.ndarray:
+    """How many edges each arc comes to (a,), at least so many together; passed: (a,) wanted edges it is long."""
+    n_edges = np.maximum(np.rint(passed * (1 - _TIE)), 1).astype(np.int64)
+    n_edges[np.argmax(passed)] += max(fewest - n_edges.sum(), 0)
+    return n_edges
 
-    position, passed, an_edge: as of `_vertices_as_knots`.
+
+def halvable(n_edges: np.ndarray) -> np.ndarray:
+    """Numbers of edges near these (a,), by at most a tenth, that can be halved a few times (`coarsening.py`)."""
+    found = n_edges
+    for parts in (2, 4, 8):
+        near = parts * ((n_edges + parts // 2) // parts)
+        found = np.where(10 * np.abs(near - n_edges) <= n_edges, near, found)
+    return found
+
+
+def even_spacing(arc_start: np.ndarray, position: np.ndarray, passed: np.ndarray, n_edges: np.ndarray) -> np.ndarray:
+    """Places (n,) of a polyline's new vertices: the number of the edge they lie on plus the share of it before them.
+
+    arc_start: (a,) which vertices but the last stay, the first among them; n_edges: (a,) from each to the next;
+    position, passed: as of `vertices_as_knots`.
     """
-    arc_start = np.nonzero(breaks)[0]
     knot = np.searchsorted(position, arc_start)
     arc_length = np.diff(passed[knot], append=passed[-1])
-    n_edges = np.maximum(np.rint(arc_length / an_edge * (1 - _TIE)), 1).astype(np.int64)
-    n_edges[np.argmax(arc_length)] += max(3 - n_edges.sum(), 0)
     arc = np.repeat(np.arange(len(arc_start)), n_edges)
     step = np.arange(len(arc)) - np.repeat(np.cumsum(n_edges) - n_edges, n_edges)
     target = passed[knot[arc]] + step / n_edges[arc] * arc_length[arc]
@@ -146,6 +183,19 @@ def _even_spacing(breaks: np.ndarray, position: np.ndarray, passed: np.ndarray, 
     share = np.where(step == 0, 0.0, np.clip(share, 0.0, 1.0 - 2.0**-30))
     places = position[before] + share * (position[before + 1] - position[before])
     return np.minimum(places, np.nextafter(position[-1], 0))
+
+
+def resampled_places(
+    breaks: np.ndarray, position: np.ndarray, passed: np.ndarray, an_edge: float, fewest: int = 3
+) -> np.ndarray:
+    """`even_spacing` at the target edge length.
+
+    breaks: (k,) bool, which vertices but the last stay, the first among them; position, passed, an_edge: as of
+    `vertices_as_knots`; fewest: edges that there are at least.
+    """
+    arc_start = np.flatnonzero(breaks)
+    arcs = np.diff(passed[np.searchsorted(position, arc_start)], append=passed[-1])
+    return even_spacing(arc_start, position, passed, halvable(count_edges(arcs / an_edge, fewest)))
 
 
 def _points_at(points: np.ndarray, length: np.ndarray, loop: np.ndarray, position: np.ndarray) -> np.ndarray:

@@ -39,13 +39,23 @@ _AT_ONCE = 32
 
 
 @dataclass(frozen=True)
-class _Net:
-    """Loops and bridges of one domain: points (n, 2), their spacing (n,), and segments from `start` to `end` (e,)."""
+class Net:
+    """What bounds a domain, and bridges: points (n, 2), their spacing (n,), and segments from `start` to `end` (e,).
+
+    A point by itself is a segment to itself.
+    """
 
     points: np.ndarray
     spacing: np.ndarray
     start: np.ndarray
     end: np.ndarray
+
+    def ends(self) -> tuple[np.ndarray, np.ndarray]:
+        """The left and the right end (k,) of each segment that is not upright."""
+        x = self.points[:, 0]
+        rises = np.sign(x[self.end] - x[self.start])
+        left, right = np.where(rises > 0, [self.start, self.end], [self.end, self.start])[:, rises != 0]
+        return left, right
 
 
 def bridge_holes(
@@ -77,7 +87,7 @@ def bridge_holes(
         mine = np.flatnonzero(region == number)
         own = np.concatenate([np.arange(first[k], first[k] + size[k]) for k in mine])
         longest = float(edge_length[number])
-        wanted = partial(_wanted_between, target, number, longest)
+        wanted = partial(wanted_between, target, number, longest)
         added, tail, head = _bridges(points[0][own], size[mine], is_hole[mine], longest, wanted)
         own = np.concatenate([own, n_points + np.arange(len(added))])
         points.append(added)
@@ -86,11 +96,16 @@ def bridge_holes(
         heads.append(own[head])
         n_points += len(added)
     points, of = np.concatenate(points), np.concatenate(of)
-    corners, count = find_faces(points, following, np.concatenate(tails), np.concatenate(heads))
+    tail, head = np.concatenate(tails), np.concatenate(heads)
+    n, s = len(following), len(tail)
+    origin = np.concatenate([np.arange(n), tail, head])
+    back = np.concatenate([np.full(n, -1), n + s + np.arange(s), n + np.arange(s)])
+    walk, count = find_faces(points, origin, np.concatenate([following, head, tail]), back)
+    corners = origin[walk]
     return points, Polygons(corners, count, of[corners[np.cumsum(count) - count]])
 
 
-def _wanted_between(target: Target | None, region: int, longest: float, turned: float, ends: np.ndarray) -> np.ndarray:
+def wanted_between(target: Target | None, region: int, longest: float, turned: float, ends: np.ndarray) -> np.ndarray:
     """The target of a region along a cut from ends[0] to ends[1], times `turned` (1 or -1): (1, 1) or (1, steps)."""
     if target is None:
         return np.array([[longest]])
@@ -103,18 +118,29 @@ def _bridges(
     """Bridges of one region: the points to add (k, 2), and the bridges' segments by the numbers of their ends (s,)."""
     before, after = neighbours(size)
     lengths = np.linalg.norm(points[after] - points, axis=1)
-    net = _Net(points, 0.5 * (lengths + lengths[before]), np.arange(len(points)), after)
+    net = Net(points, 0.5 * (lengths + lengths[before]), np.arange(len(points)), after)
     loop = np.repeat(np.arange(len(size)), size)
-    for turned in (1.0, -1.0):  # to the left, to the right
+    # The leftmost (then lowest) vertex of each hole, and the rightmost (then highest) one.
+    tips = (np.lexsort((*side.T[::-1], loop))[(np.cumsum(size) - size)[is_hole]] for side in (points, -points))
+    net = add_bridges(net, *tips, edge_length, wanted)
+    return net.points[len(points) :], net.start[len(points) :], net.end[len(points) :]
+
+
+def add_bridges(net: Net, left: np.ndarray, right: np.ndarray, edge_length: float, wanted: Callable) -> Net:
+    """A net with bridges from some vertices to the left, and from some to the right, that have none.
+
+    left, right (k,): they see a vertex farther left (or right), and nothing of the net goes there from them.
+    edge_length: the longest target; wanted: 1 or -1 (what points must be multiplied by to be where they are) and the
+    ends (2, 2) of a bridge -> the target along it, (1, 1) or (1, steps).
+    """
+    for tips, turned in ((left, 1.0), (right, -1.0)):
         boxes = Boxes(*_boxes(net.points, net.start, net.end))
-        # The leftmost (then lowest) vertex of each hole, from left to right.
-        x, y = net.points[: len(loop)].T
-        tips = np.lexsort((y, x, loop))[(np.cumsum(size) - size)[is_hole]]
-        for tip in tips[np.lexsort((y[tips], x[tips]))]:
+        x, y = net.points[tips].T
+        for tip in tips[np.lexsort((y, x))]:  # from left to right
             net = _with_bridge(net, boxes, tip, edge_length, partial(wanted, turned))
         # Half a turn, which is exact: what is to the right then lies to the left.
-        net = _Net(-net.points, net.spacing, net.start, net.end)
-    return net.points[len(points) :], net.start[len(points) :], net.end[len(points) :]
+        net = Net(-net.points, net.spacing, net.start, net.end)
+    return net
 
 
 def _boxes(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -122,7 +148,7 @@ def _boxes(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> tuple[np.n
     return np.minimum(points[start], points[end]), np.maximum(points[start], points[end])
 
 
-def _with_bridge(net: _Net, boxes: Boxes, tip: int, edge_length: float, wanted: Callable) -> _Net:
+def _with_bridge(net: Net, boxes: Boxes, tip: int, edge_length: float, wanted: Callable) -> Net:
     """The net with a bridge from vertex `tip` to the left, if it has none; boxes: of the segments, and then of more."""
     points, here = net.points, net.points[tip]
     reach, largest = _NEAR * max(net.spacing[tip], edge_length), 2 * boxes.extent
@@ -145,7 +171,7 @@ def _with_bridge(net: _Net, boxes: Boxes, tip: int, edge_length: float, wanted: 
     path = np.concatenate([points[[tip]], added, points[[goal]]])
     boxes.add(*_boxes(path, np.arange(len(path) - 1), np.arange(1, len(path))))
     length = np.linalg.norm(np.diff(path, axis=0), axis=1)
-    return _Net(
+    return Net(
         np.concatenate([points, added]),
         np.concatenate([net.spacing, 0.5 * (length[1:] + length[:-1])]),
         np.concatenate([net.start, numbers[:-1]]),
@@ -153,7 +179,7 @@ def _with_bridge(net: _Net, boxes: Boxes, tip: int, edge_length: float, wanted: 
     )
 
 
-def _window(net: _Net, boxes: Boxes, low: np.ndarray, high: np.ndarray) -> tuple[_Net, np.ndarray]:
+def _window(net: Net, boxes: Boxes, low: np.ndarray, high: np.ndarray) -> tuple[Net, np.ndarray]:
     """The net with only the segments that meet a box, and its vertices (k,) in the box."""
     segments = boxes.around(low, high)
     start, end = net.start[segments], net.end[segments]
@@ -162,10 +188,10 @@ def _window(net: _Net, boxes: Boxes, low: np.ndarray, high: np.ndarray) -> tuple
     start, end = start[meets], end[meets]
     near = np.unique(np.concatenate([start, end]))
     near = near[np.all((net.points[near] >= low) & (net.points[near] <= high), axis=1)]
-    return _Net(net.points, net.spacing, start, end), near
+    return Net(net.points, net.spacing, start, end), near
 
 
-def _visible(net: _Net, tip: int, near: np.ndarray) -> np.ndarray:
+def _visible(net: Net, tip: int, near: np.ndarray) -> np.ndarray:
     """Vertices of `near` that `tip` sees, the closest first: those among the closest few, or the next few, ..."""
     here = net.points[tip]
     near = near[np.argsort(np.sum((net.points[near] - here) ** 2, axis=1), kind="stable")]
@@ -178,7 +204,7 @@ def _visible(net: _Net, tip: int, near: np.ndarray) -> np.ndarray:
     return near[:0]
 
 
-def _costs(net: _Net, tip: int, seen: np.ndarray, near: np.ndarray, edge_length: float) -> np.ndarray:
+def _costs(net: Net, tip: int, seen: np.ndarray, near: np.ndarray, edge_length: float) -> np.ndarray:
     """Cost (k,) of bridges from `tip` to the vertices `seen`: long, stretched, sharp at their ends or near others."""
     here, there = net.points[tip], net.points[seen]
     along = there - here
@@ -204,20 +230,20 @@ def _costs(net: _Net, tip: int, seen: np.ndarray, near: np.ndarray, edge_length:
     return cost + 4 * narrow**2 + 2 * narrow
 
 
-def _gaps(net: _Net, vertex: np.ndarray, toward: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _gaps(net: Net, vertex: np.ndarray, toward: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Angles (k,) from a direction (k, 2) at a vertex (k,) to the next segments there, to its left and to its right."""
     heading = np.arctan2(toward[:, 1], toward[:, 0])[:, None]
     left, right = [], []
     for one, other in ((net.start, net.end), (net.end, net.start)):
         x, y = (net.points[other] - net.points[one]).T
         angle = (np.arctan2(y, x) - heading) % (2 * np.pi)
-        at = one == vertex[:, None]
+        at = (one == vertex[:, None]) & (net.start != net.end)
         left.append(np.where(at, angle, 2 * np.pi).min(axis=1))
         right.append(np.where(at, 2 * np.pi - angle, 2 * np.pi).min(axis=1))
     return np.minimum(*left), np.minimum(*right)
 
 
-def _points_on(net: _Net, tip: int, goal: int, near: np.ndarray, wanted: Callable) -> np.ndarray:
+def _points_on(net: Net, tip: int, goal: int, near: np.ndarray, wanted: Callable) -> np.ndarray:
     """The new vertices (k, 2) of the bridge from `tip` to `goal`; none where, rounded, they could spoil it."""
     ends = net.points[[tip, goal]]
     spacing = net.spacing[[tip, goal]]

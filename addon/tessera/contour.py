@@ -66,7 +66,7 @@ def clean_domains(domains: Sequence[Sequence[ArrayLike]]) -> list[list[np.ndarra
     results: list[list[np.ndarray] | ContourError] = []
     for loops in domains:
         try:
-            results.append([_without_repeats(_checked(points)) for points in loops])
+            results.append([without_repeats(checked_points(points)) for points in loops])
         except ContourError as error:
             results.append(error)
     complete = False
@@ -83,21 +83,22 @@ def _counter_clockwise(loop: np.ndarray) -> np.ndarray:
     return loop if turn > 0 else loop[::-1].copy()
 
 
-def _checked(points: ArrayLike) -> np.ndarray:
+def checked_points(points: ArrayLike, name: str = "a contour") -> np.ndarray:
+    """Points (k, 2) as float64; raises ContourError "not-finite", or ValueError if the shape is another."""
     points = np.array(points, dtype=np.float64)
     if points.size == 0:
         points = points.reshape(0, 2)
     if points.ndim != 2 or points.shape[1] != 2:
-        message = f"a contour is an array of shape (k, 2), not {points.shape}"
+        message = f"{name} is an array of shape (k, 2), not {points.shape}"
         raise ValueError(message + ("; a domain is a sequence of contours" if points.shape == (2,) else ""))
     bad = np.nonzero(~np.isfinite(points).all(axis=1))[0]
     if len(bad):
-        message = f"Point {bad[0]} (counting from 0) of the contour has a coordinate that is not a finite number. "
+        message = f"Point {bad[0]} (counting from 0) of {name} has a coordinate that is not a finite number. "
         raise ContourError("not-finite", message + "Remove the point or correct it.")
     return points
 
 
-def _without_repeats(points: np.ndarray) -> np.ndarray:
+def without_repeats(points: np.ndarray) -> np.ndarray:
     """The points that are not at the place of the one before; raises if no polygon is left."""
     place = tuple(map(float, points[0])) if len(points) else None
     if len(points):
@@ -139,10 +140,10 @@ def _meeting_errors(results: list) -> tuple[dict[int, ContourError], bool]:
     pairs = crossing_pairs(start, end, domain)
     for first, second in pairs[np.unique(domain[pairs[:, 0]], return_index=True)[1]]:
         place = crossing_place(start, end, np.array([first, second]))
-        errors[int(domain[first])] = _meeting_error(loop[first] == loop[second], place)
+        errors[int(domain[first])] = meeting_error(loop[first] == loop[second], place)
     for first, second in _repeated_points(start, domain):
         same = loop[first] == loop[second]
-        errors.setdefault(int(domain[first]), _meeting_error(same, (float(start[first, 0]), float(start[first, 1]))))
+        errors.setdefault(int(domain[first]), meeting_error(same, (float(start[first, 0]), float(start[first, 1]))))
     return errors, len(pairs) <= MOST_PAIRS
 
 
@@ -154,7 +155,8 @@ def _repeated_points(points: np.ndarray, domain: np.ndarray) -> np.ndarray:
     return np.column_stack([one, other])[same]
 
 
-def _meeting_error(same_loop: bool, place: tuple[float, float]) -> ContourError:
+def meeting_error(same_loop: bool, place: tuple[float, float]) -> ContourError:
+    """The error of a contour that meets itself, "self-intersection", or of two that meet, "crossing"."""
     where = f"near ({place[0]:.9g}, {place[1]:.9g})"
     if same_loop:
         message = f"The contour crosses or touches itself {where}. Move points there to keep its edges apart."

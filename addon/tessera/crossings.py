@@ -19,10 +19,10 @@ def crossing_pairs(start: np.ndarray, end: np.ndarray, group: np.ndarray) -> np.
     """Pairs of segments of one group that have a point in common other than a shared, identical end point.
 
     start, end (n, 2) float64, group (n,) int -> (k, 2) int64, first < second, sorted. Exact; all the pairs, unless
-    there are more than MOST_PAIRS. About O(n log n).
+    there are more than MOST_PAIRS. About O(n log n). A segment without length is a point, which meets what it lies on.
     """
     found, total = [np.zeros((0, 2), dtype=np.int64)], 0
-    for pairs in _close_pairs(start, end, group):
+    for pairs in close_pairs(start, end, group):
         first, second = pairs.T
         found.append(pairs[segments_cross(start[first], end[first], start[second], end[second])])
         total += len(found[-1])
@@ -45,15 +45,17 @@ def crossing_place(start: np.ndarray, end: np.ndarray, pair: np.ndarray) -> tupl
     return float(x), float(y)
 
 
-def _close_pairs(start: np.ndarray, end: np.ndarray, group: np.ndarray) -> Iterator[np.ndarray]:
-    """Blocks (k, 2) of pairs of segments of one group that may meet; a pair can come twice.
+def close_pairs(start: np.ndarray, end: np.ndarray, group: np.ndarray, distance: float = 0.0) -> Iterator[np.ndarray]:
+    """Blocks (k, 2) of pairs of segments of one group that may be as near as `distance`; a pair can come twice.
 
     Each group is halved by a line at its median, and a segment across the line is cut there. The line runs along x,
     along y, or as most of the group's segments do, whichever separates them best. Pieces that come nearer to the line
     than the padding, which is far above any rounding, count for both sides, so that no common point is lost.
     """
     segment = np.arange(len(start))
-    padding = 1e-12 * np.ptp(np.concatenate([start, end]), axis=0).max(initial=0.0) if len(start) else 0.0
+    padding = distance
+    if len(start):
+        padding += 1e-12 * np.ptp(np.concatenate([start, end]), axis=0).max(initial=0.0)
     origin = start[:1]
     start, end = start - origin, end - origin
     while len(segment):

@@ -25,9 +25,20 @@ def inner_edges(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return edges, count == 2
 
 
-def off_boundary(triangles: np.ndarray, n_vertices: int) -> np.ndarray:
-    """(n,) which vertices no boundary edge has."""
+def off_boundary(triangles: np.ndarray, n_vertices: int, fixed: np.ndarray | None = None) -> np.ndarray:
+    """(n,) which vertices no boundary edge has, and none of the fixed edges (f, 2)."""
     edges, inner = inner_edges(triangles)
     free = np.ones(n_vertices, dtype=bool)
     free[edges[~inner]] = False
+    if fixed is not None:
+        free[fixed] = False
     return free
+
+
+def among(edges: np.ndarray, fixed: np.ndarray | None) -> np.ndarray:
+    """(e,) which of the edges (e, 2) are among the fixed ones (f, 2), in either direction."""
+    if fixed is None or not len(fixed) or not len(edges):
+        return np.zeros(len(edges), dtype=bool)
+    stride = int(max(edges.max(), fixed.max())) + 1
+    key, wanted = (np.min(e, axis=1).astype(np.int64) * stride + np.max(e, axis=1) for e in (edges, fixed))
+    return np.isin(key, wanted)

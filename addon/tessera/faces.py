@@ -1,4 +1,4 @@
-"""The faces of a plane graph of loops and of paths between them."""
+"""The faces of a plane graph, given by its half-edges."""
 
 from __future__ import annotations
 
@@ -8,36 +8,31 @@ from .predicates import orientation
 
 
 def find_faces(
-    points: np.ndarray, following: np.ndarray, tails: np.ndarray, heads: np.ndarray
+    points: np.ndarray, tails: np.ndarray, heads: np.ndarray, back: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The faces on the left of the loops: corners, one face behind the other, and the number of corners of each.
+    """The faces on the left of half-edges: their half-edges, one face behind the other, and how many each has.
 
-    following (n,): the vertex after each of the loops' n vertices, along the loop with the domain on its left; tails,
-    heads (s,): the ends of the bridges' segments, which have a face on either side.
+    tails, heads: (h,) the ends of the half-edges by number; back: (h,) the number of the half-edge the other way, or
+    -1 where there is no face on that side.
     """
-    # Half-edges: loop vertices by their number, then the bridges' segments, there and back.
-    n, s = len(following), len(tails)
-    origin = np.concatenate([np.arange(n), tails, heads])
-    target = np.concatenate([following, heads, tails])
-    none, there, back = np.full(n, -1), n + np.arange(s), n + s + np.arange(s)
+    (one_sided,) = np.nonzero(back < 0)
+    none = np.full(len(one_sided), -1)
     # Spokes: what leaves a vertex, and what comes the same way.
-    leaves = np.concatenate([np.arange(n), there, back, none])
-    comes = np.concatenate([none, back, there, np.arange(n)])
-    spoke_at, spoke_to = np.concatenate([origin, following]), np.concatenate([target, np.arange(n)])
-    order = _counter_clockwise(points, spoke_at, spoke_to)
+    leaves, comes = np.concatenate([np.arange(len(tails)), none]), np.concatenate([back, one_sided])
+    spoke_at, spoke_to = np.concatenate([tails, heads[one_sided]]), np.concatenate([heads, tails[one_sided]])
+    order = counter_clockwise(points, spoke_at, spoke_to)
     leaves, comes, spoke_at = leaves[order], comes[order], spoke_at[order]
     # With the face on the left, the next half-edge is the first one clockwise of the way back.
     count = np.bincount(spoke_at, minlength=len(points))
     first = np.cumsum(count) - count
     place = np.arange(len(order))
     previous = np.where(place == first[spoke_at], first[spoke_at] + count[spoke_at], place) - 1
-    after = np.empty(len(origin), dtype=np.int64)
+    after = np.empty(len(tails), dtype=np.int64)
     after[comes[comes >= 0]] = leaves[previous[comes >= 0]]
-    walk, size = _cycles(after)
-    return origin[walk], size
+    return find_cycles(after)
 
 
-def _counter_clockwise(points: np.ndarray, at: np.ndarray, to: np.ndarray) -> np.ndarray:
+def counter_clockwise(points: np.ndarray, at: np.ndarray, to: np.ndarray) -> np.ndarray:
     """Spokes by the vertex (k,) that they are at, and counter-clockwise around it, exactly: their order (k,)."""
     order = np.argsort(at, kind="stable")
     count = np.bincount(at)
@@ -58,7 +53,7 @@ def _counter_clockwise(points: np.ndarray, at: np.ndarray, to: np.ndarray) -> np
     return order[np.lexsort((rank, at[order]))]
 
 
-def _cycles(after: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def find_cycles(after: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The cycles of a permutation (n,), each from its smallest number, one behind the other, and their lengths."""
     following = after.tolist()
     seen = bytearray(len(following))

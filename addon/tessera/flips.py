@@ -11,13 +11,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from .edges import among
 from .quality import element_quality
 
 _GAIN = 1e-6  # in the pair's worse quality: less is not worth a flip, and rounding is far below
 
 
-def flip_edges(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """The same meshes with better elements: (m, 3); boundary edges stay, and so do all vertices.
+def flip_edges(vertices: np.ndarray, triangles: np.ndarray, fixed: np.ndarray | None = None) -> np.ndarray:
+    """The same meshes with better elements: (m, 3); boundary edges and fixed ones (f, 2) stay, and so do all vertices.
 
     vertices: (n, 2) float64; triangles: (m, 3) int, counter-clockwise, of one mesh or of many that share no vertices:
     what is done to one does not depend on the others, and its triangles stay in the places that it has.
@@ -30,7 +31,7 @@ def flip_edges(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
         touched = np.zeros(len(vertices), dtype=bool)
         touched[triangles[changed]] = True
         near = np.flatnonzero(np.count_nonzero(touched[triangles], axis=1) >= 2)
-        pairs, better = _quadrilaterals(triangles[near], len(vertices))
+        pairs, better = _quadrilaterals(triangles[near], len(vertices), fixed)
         pairs = near[pairs]
         then = np.stack([element_quality(vertices, better[:, side]) for side in (0, 1)], axis=1)
         gain = then.min(axis=1) - quality[pairs].min(axis=1)
@@ -42,12 +43,20 @@ def flip_edges(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
     return triangles
 
 
-def _quadrilaterals(triangles: np.ndarray, n_vertices: int) -> tuple[np.ndarray, np.ndarray]:
-    """The pairs of triangles (m, 3) on the two sides of each edge (e, 2), and those after its exchange (e, 2, 3)."""
+def _quadrilaterals(
+    triangles: np.ndarray, n_vertices: int, fixed: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """The pairs of triangles (m, 3) on the two sides of each edge (e, 2), and those after its exchange (e, 2, 3).
+
+    Edges that are fixed (f, 2) are left out.
+    """
     start, end = triangles.ravel().astype(np.int64), np.roll(triangles, -1, axis=1).ravel()
     key = np.minimum(start, end) * n_vertices + np.maximum(start, end)
     order = np.argsort(key)
     twice = np.flatnonzero(key[order[1:]] == key[order[:-1]])
+    if fixed is not None:
+        first = order[twice]
+        twice = twice[~among(np.column_stack([start[first], end[first]]), fixed)]
     sides = np.sort(np.stack([order[twice], order[twice + 1]], axis=1), axis=1)
     pairs, corner = np.divmod(sides, 3)
     left, right = np.moveaxis(triangles[pairs, (corner + 2) % 3], 1, 0)

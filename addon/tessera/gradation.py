@@ -54,6 +54,10 @@ class Target:
                     self.errors[number] = error
         return np.maximum(lowest(self.cones, points, domain, wanted), self.least[domain])
 
+    def inside(self, domain: int) -> Callable[[np.ndarray], np.ndarray]:
+        """The target of one domain: points (n, 2) -> lengths (n,)."""
+        return lambda points: self(points, np.full(len(points), domain))
+
     @property
     def constant(self) -> bool:
         """Whether there is one length for each domain."""

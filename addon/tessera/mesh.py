@@ -31,22 +31,28 @@ class Report:
 
 @dataclass(frozen=True)
 class Mesh:
-    """vertices: (n, 2) float64, in the input's coordinates; triangles: (m, 3) int32, counter-clockwise."""
+    """vertices: (n, 2) float64, in the input's coordinates; triangles: (m, 3) int32, counter-clockwise.
+
+    region: (m,) int32, the number of the outer contour around each triangle among the contours that were given, or of
+    the region that it is part of.
+    """
 
     vertices: np.ndarray
     triangles: np.ndarray
+    region: np.ndarray
     report: Report
 
 
 def make_mesh(
     vertices: np.ndarray,
     triangles: np.ndarray,
+    region: np.ndarray,
     *,
     fallbacks: int = 0,
     warnings: tuple[str, ...] = (),
     seconds: dict[str, float] | None = None,
 ) -> Mesh:
-    """A mesh with its report made from its vertices (n, 2) and triangles (m, 3)."""
+    """A mesh with its report made from its vertices (n, 2), triangles (m, 3) and their regions (m,)."""
     quality = element_quality(vertices, triangles)
     edges = unique_edges(triangles)
     lengths = np.linalg.norm(vertices[edges[:, 0]] - vertices[edges[:, 1]], axis=1)
@@ -60,4 +66,5 @@ def make_mesh(
         warnings=warnings,
         seconds=dict(seconds or {}),
     )
-    return Mesh(vertices, np.ascontiguousarray(triangles, dtype=np.int32), report)
+    triangles, region = (np.ascontiguousarray(part, dtype=np.int32) for part in (triangles, region))
+    return Mesh(vertices, triangles, region, report)

@@ -4,29 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import repeat
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .assembly import mean_edge_lengths, mesh_cells, wanted_edge_lengths
-from .boundary import resample_loops
-from .bridges import bridge_holes
-from .contour import Nesting, clean_domains, clean_loop, nesting, signed_area
-from .division import divide
+from .constraints import Domain, PlanarDomain, planar_domains
+from .contour import Nesting, clean_domains, clean_loop, edges_of, nesting, signed_area
 from .errors import ContourError
 from .flips import flip_edges
 from .gradation import Target, prepare
+from .levels import RegionMeshes, mesh_by_levels
 from .mesh import Mesh, make_mesh
-from .notices import long_edge_warnings, lost_area_warnings
+from .notices import gap_warnings, long_edge_warnings, lost_area_warnings, repeated_warnings
+from .outlines import Outlines, outlines_of, resampled
 from .paper import roles_named
 from .placement import MOST_INNER
-from .refinement import refine
-from .remeshing import improve
 from .scheme import LARGEST_CONTOUR, join_vertices, mesh_contours
-from .sizing import FromLoops, Sizing, checked_edge_length, checked_limits, grade_from_edges, positive
-from .smoothing import checked_steps
+from .settings import Settings
+from .sizing import Limits, Sizing, checked_edge_length
+from .smoothing import checked_steps, smooth_in_steps
 from .smoothing import smooth as move_downhill
+from .steps import Progress, Steps, finish, within
 from .stopwatch import Stopwatch
 
 MOST_TRIANGLES = 5_000_000
@@ -36,11 +34,14 @@ def mesh(
     loops: Sequence[ArrayLike],
     edge_length: float,
     *,
+    points: ArrayLike | None = None,
+    lines: Sequence[ArrayLike] = (),
     sizing: Sizing | None = None,
     min_edge_length: float | None = None,
     gradation: float = 1.3,
     boundary: str = "resample",
     corner_angle: float = 32.0,
+    passes: int = 3,
     flips: bool = False,
     smooth: int = 0,
 ) -> Mesh:
@@ -49,23 +50,92 @@ def mesh(
     loops: (k, 2) arrays, in any winding and order: outer contours, holes and islands in them by the even-odd rule.
     edge_length: the target, in the loops' unit. boundary: "resample" places vertices on the given polylines at the
     target edge length, keeping their corners, which turn by more than corner_angle degrees; "keep" keeps exactly the
-    given vertices and adds none on the contour. flips: a last pass exchanges edges where that raises the worse quality
+    given vertices and adds none on the contour. passes: how often in a row NN2 is asked for better places of all inner
+    vertices. flips: a last pass exchanges edges where that raises the worse quality
     of the two elements beside them. smooth: how often every inner vertex may move after that, to better the poorest
     elements.
+
+    points: (p, 2), inside the domain, that must be vertices of the mesh. lines: polylines (k, 2), closed if they end
+    where they start, whose course must be edges of the mesh; their vertices are placed as those of the contours. They
+    may end at contours and at each other, and share vertices, but they cross nothing.
 
     sizing: asks for shorter targets than edge_length: a number; a function that takes points (n, 2) in the domain and
     gives lengths (n,); `by_curvature`, `by_thickness`, `by_distance`, `from_values`; or the `smallest` of several. No
     target is shorter than min_edge_length, and from one element to the next it changes by no more than the factor
     gradation.
 
+    Contours that touch in vertices, or outside of each other along edges, are meshed with a common boundary there, and
+    a warning. The mesh's region is the number of the outer contour around each triangle.
+
     Raises ContourError, whose ``reason`` is a short word, for input that cannot be meshed, and a plain ValueError for
     what is no sequence of (k, 2) arrays of numbers.
     """
-    wanted = sizing, min_edge_length, gradation, corner_angle
-    (result,) = mesh_domains([loops], edge_length, boundary, flips, smooth, *wanted)
+    settings = Settings(sizing, min_edge_length, gradation, boundary, corner_angle, passes, flips, smooth)
+    return finish(_one_in_steps(_domain(loops, points, lines), edge_length, settings))
+
+
+def mesh_in_steps(
+    loops: Sequence[ArrayLike],
+    edge_length: float,
+    *,
+    points: ArrayLike | None = None,
+    lines: Sequence[ArrayLike] = (),
+    sizing: Sizing | None = None,
+    min_edge_length: float | None = None,
+    gradation: float = 1.3,
+    boundary: str = "resample",
+    corner_angle: float = 32.0,
+    passes: int = 3,
+    flips: bool = False,
+    smooth: int = 0,
+) -> Steps[Mesh]:
+    """What `mesh` does, as a generator: it yields a `Progress` several times a second, and returns the Mesh.
+
+    Closing the generator stops the work. Raises as `mesh` does, when it comes to it.
+    """
+    settings = Settings(sizing, min_edge_length, gradation, boundary, corner_angle, passes, flips, smooth)
+    return _one_in_steps(_domain(loops, points, lines), edge_length, settings)
+
+
+def _domain(
+    loops: Sequence[ArrayLike], points: ArrayLike | None, lines: Sequence[ArrayLike]
+) -> Sequence[ArrayLike] | Domain:
+    """What `domains_in_steps` takes."""
+    return Domain(loops, None, points, lines) if points is not None or len(lines) > 0 else loops
+
+
+def _one_in_steps(domain: Sequence[ArrayLike] | Domain, edge_length: float, settings: Settings) -> Steps[Mesh]:
+    (result,) = yield from domains_in_steps([domain], edge_length, settings)
     if isinstance(result, ContourError):
         raise result
     return result
+
+
+def mesh_regions(
+    regions: Sequence[Sequence[ArrayLike]],
+    edge_length: float,
+    *,
+    points: ArrayLike | None = None,
+    lines: Sequence[ArrayLike] = (),
+    sizing: Sizing | None = None,
+    min_edge_length: float | None = None,
+    gradation: float = 1.3,
+    boundary: str = "resample",
+    corner_angle: float = 32.0,
+    passes: int = 3,
+    flips: bool = False,
+    smooth: int = 0,
+) -> Mesh:
+    """Mesh several regions as one: where they share edges, or parts of them, they have the same vertices.
+
+    regions: domains as of `mesh`, that do not overlap. A vertex of one that is nearer to an edge of another than 1e-6
+    of the size of all lies on it. The mesh's region is the number of the region that each triangle is part of. All else
+    is as of `mesh`. Raises ContourError, "overlap" for regions that overlap.
+    """
+    settings = Settings(sizing, min_edge_length, gradation, boundary, corner_angle, passes, flips, smooth)
+    loops = [loop for region in regions for loop in region]
+    of = [number for number, region in enumerate(regions) for _ in region]
+    return finish(_one_in_steps(Domain(loops, of, points, lines), edge_length, settings))
 
 
 def mesh_many(
@@ -76,6 +146,7 @@ def mesh_many(
     min_edge_length: float | None = None,
     gradation: float = 1.3,
     corner_angle: float = 32.0,
+    passes: int = 3,
     flips: bool = False,
     smooth: int = 0,
 ) -> list[Mesh | ContourError]:
@@ -83,8 +154,8 @@ def mesh_many(
 
     Raises ContourError "edge-length" where no domain could be meshed at that length.
     """
-    wanted = sizing, min_edge_length, gradation, corner_angle
-    return mesh_domains(domains, edge_length, "resample", flips, smooth, *wanted)
+    settings = Settings(sizing, min_edge_length, gradation, "resample", corner_angle, passes, flips, smooth)
+    return mesh_domains(domains, edge_length, settings)
 
 
 def mesh_contour(
@@ -112,70 +183,96 @@ def mesh_contour(
     if smooth:
         with watch("smoothing"):
             vertices = move_downhill(vertices, meshes.triangles, smooth)
-    warnings = long_edge_warnings([contour], lambda places: np.full(len(places), edge_length))
+    warnings = long_edge_warnings(*edges_of([contour]), lambda places: np.full(len(places), edge_length))
     if meshes.n_inner[0] < meshes.wanted[0]:
         warnings += (
             f"{meshes.wanted[0]} inner vertices would suit the target edge length, {meshes.n_inner[0]} were placed "
             f"(at most {MOST_INNER}): tessera.mesh refines further",
         )
     return make_mesh(
-        vertices, meshes.triangles, fallbacks=int(meshes.fallbacks[0]), warnings=warnings, seconds=watch.seconds
+        vertices,
+        meshes.triangles,
+        np.zeros(len(meshes.triangles)),
+        fallbacks=int(meshes.fallbacks[0]),
+        warnings=warnings,
+        seconds=watch.seconds,
     )
 
 
 def mesh_domains(
-    domains: Sequence[Sequence[ArrayLike]],
-    edge_length: float,
-    boundary: str,
-    flips: bool,
-    smooth: int,
-    sizing: Sizing | None = None,
-    min_edge_length: float | None = None,
-    gradation: float = 1.3,
-    corner_angle: float = 32.0,
+    domains: Sequence[Sequence[ArrayLike] | Domain], edge_length: float, settings: Settings
 ) -> list[Mesh | ContourError]:
+    """`domains_in_steps`, at once."""
+    return finish(domains_in_steps(domains, edge_length, settings))
+
+
+def domains_in_steps(
+    domains: Sequence[Sequence[ArrayLike] | Domain], edge_length: float, settings: Settings
+) -> Steps[list[Mesh | ContourError]]:
     """Mesh many domains as one batch: a Mesh, or the ContourError that it has, for each."""
-    if boundary not in ("resample", "keep"):
-        raise ValueError(f'boundary is "resample" or "keep", not {boundary!r}')
-    smooth = checked_steps(smooth)
-    limits = checked_limits(edge_length, min_edge_length, gradation, corner_angle)
-    if sizing is not None and not callable(sizing) and not isinstance(sizing, FromLoops):
-        number = max(positive(sizing, "sizing"), limits.shortest or 0.0)
-        sizing, limits = None, replace(limits, longest=min(limits.longest, number))
+    sizing, limits = settings.checked(edge_length)
     watch = Stopwatch()
     with watch("contours"):
-        cleaned = clean_domains(domains)
-        nested = [nesting([] if isinstance(loops, ContourError) else loops) for loops in cleaned]
-        results = list(map(checked_domain, cleaned, nested, repeat(limits.longest)))
+        cleaned, planar = planar_domains(domains, clean_domains([() if isinstance(d, Domain) else d for d in domains]))
+        nested = [nesting([] if isinstance(d, ContourError) or n in planar else d) for n, d in enumerate(cleaned)]
+        results = [
+            checked_graph(planar[n], limits.longest) if n in planar else checked_domain(d, nested[n], limits.longest)
+            for n, d in enumerate(cleaned)
+        ]
+    yield Progress("contours", 0.02)
     with watch("sizing"):
         sound = {number: result for number, result in enumerate(results) if not isinstance(result, ContourError)}
         target, errors = prepare(sound, sizing, limits, MOST_TRIANGLES)
         results = [errors.get(number, result) for number, result in enumerate(results)]
+    yield Progress("sizing", 0.05)
     with watch("boundary"):
         numbers = [number for number, result in enumerate(results) if not isinstance(result, ContourError)]
-        loops = [loop for number in numbers for loop in results[number]]
-        domain = np.repeat(numbers, [len(results[number]) for number in numbers]).astype(np.int64)
-        region, is_hole = _regions([nested[number] for number in numbers])
-        if boundary == "resample" and loops:
-            spacing = limits.longest if target.constant else target
-            loops = resample_loops(loops, spacing, domain, limits.corner_angle)
-    if loops:
-        parts = _mesh_regions(loops, region, is_hole, domain, target, flips, smooth, watch)
-        vertices, triangles, owner, fallbacks = parts
-        of = domain[owner]
-        fell = np.bincount(domain, fallbacks, minlength=len(results)).astype(int)
-        for number, (part, elements) in zip(numbers, _parts(vertices, triangles, of, numbers), strict=True):
-            if boundary == "keep":
-                warnings = long_edge_warnings(
-                    results[number], lambda places, n=number: target(places, np.full(len(places), n))
-                )
+        outlines = outlines_of(results, nested, planar, numbers)
+        if settings.boundary == "resample":
+            outlines = resampled(outlines, target, limits.corner_angle)
+        start, end, of = outlines.edges()
+        gaps = gap_warnings(start, end, outlines.domains[of], target)
+    if numbers:
+        meshes = yield from within(_finished(outlines, target, limits, settings, watch), 0.1, 1.0)
+        domain, first = outlines.domains, outlines.firsts
+        fell = np.bincount(domain, meshes.fallbacks, minlength=len(results)).astype(int)
+        parts = _parts(meshes, domain[meshes.region], numbers)
+        for number, (part, elements, region) in zip(numbers, parts, strict=True):
+            one, places = planar.get(number), target.inside(number)
+            if settings.boundary == "keep":
+                ends = one.graph.points[one.graph.edges.T] if one else edges_of(results[number])
+                warnings = long_edge_warnings(*ends, places)
             else:
-                area = enclosed_area(results[number], nested[number])
+                area = one.graph.area() if one else enclosed_area(results[number], nested[number])
                 warnings = lost_area_warnings(area, part, elements, target.most[number])
+            given = domains[number]
+            repeated = repeated_warnings(given.loops if isinstance(given, Domain) else given, results[number])
             results[number] = make_mesh(
-                part, elements, fallbacks=int(fell[number]), warnings=warnings, seconds=watch.seconds
+                part,
+                elements,
+                region - first[number],
+                fallbacks=int(fell[number]),
+                warnings=warnings + (one.warnings if one else ()) + gaps.get(number, ()) + repeated,
+                seconds=watch.seconds,
             )
     return [target.errors.get(number, result) for number, result in enumerate(results)]
+
+
+def _finished(
+    outlines: Outlines, target: Target, limits: Limits, settings: Settings, watch: Stopwatch
+) -> Steps[RegionMeshes]:
+    """The regions' meshes, after the passes that were asked for."""
+    end = 0.8 if settings.smooth else 1.0
+    meshing = mesh_by_levels(outlines, target, limits.corner_angle, settings.passes, watch)
+    meshes = yield from within(meshing, 0.0, end)
+    vertices, triangles = meshes.vertices, meshes.triangles
+    if settings.flips:
+        with watch("flips"):
+            triangles = flip_edges(vertices, triangles, meshes.fixed)
+    if settings.smooth:
+        smoothing = smooth_in_steps(vertices, triangles, settings.smooth, meshes.region, watch, meshes.fixed)
+        vertices = yield from within(smoothing, end, 1.0)
+    return replace(meshes, vertices=vertices, triangles=triangles)
 
 
 def checked_domain(
@@ -186,8 +283,17 @@ def checked_domain(
         return loops
     if not loops:
         return ContourError("too-few-points", "The domain has no contour. Give at least one closed loop of points.")
-    area = enclosed_area(loops, nested)
     length = sum(float(np.linalg.norm(loop - np.roll(loop, 1, axis=0), axis=1).sum()) for loop in loops)
+    return _too_many(enclosed_area(loops, nested), length, edge_length) or loops
+
+
+def checked_graph(domain: PlanarDomain, edge_length: float) -> list[np.ndarray] | ContourError:
+    """The domain's clean loops, or the error of one that would have too many triangles."""
+    return _too_many(domain.graph.area(), domain.graph.length(), edge_length) or domain.loops
+
+
+def _too_many(area: float, length: float, edge_length: float) -> ContourError | None:
+    """The error of a domain of an area, with so much of boundary, that would have too many triangles."""
     # Equilateral triangles, and one on each edge of the boundary: area / l² + length / l, both divided before they are
     # multiplied, so that no length is too small or too large for it.
     area *= 4 / 3**0.5
@@ -199,7 +305,7 @@ def checked_domain(
             f"the most is {MOST_TRIANGLES:,}. Use {1.1 * smallest:.2g} or more."
         )
         return ContourError("too-many-triangles", message)
-    return loops
+    return None
 
 
 def enclosed_area(loops: list[np.ndarray], nested: Nesting) -> float:
@@ -208,78 +314,16 @@ def enclosed_area(loops: list[np.ndarray], nested: Nesting) -> float:
     return float(areas[nested.outer].sum() - areas[nested.holes].sum())
 
 
-def _regions(nested: list[Nesting]) -> tuple[np.ndarray, np.ndarray]:
-    """Of all loops of domains, one behind the other: the number of the outer contour around each (l,), and the holes.
-
-    An outer contour is its own; the numbers count all the loops.
-    """
-    region, is_hole, first = [], [], 0
-    for loops in nested:
-        own = np.arange(len(loops.outer) + len(loops.holes))
-        own[loops.holes] = loops.parent
-        region.append(own + first)
-        is_hole.append(np.isin(np.arange(len(own)), loops.holes))
-        first += len(own)
-    if not region:
-        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=bool)
-    return np.concatenate(region), np.concatenate(is_hole)
-
-
-def _mesh_regions(
-    loops: list[np.ndarray],
-    region: np.ndarray,
-    is_hole: np.ndarray,
-    domain: np.ndarray,
-    target: Target,
-    flips: bool,
-    smooth: int,
-    watch: Stopwatch,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Mesh what loops bound (`bridge_holes`): vertices (n, 2), triangles (m, 3), the region of each (m,), fallbacks.
-
-    domain: (l,) the number that the target knows each loop's domain by. The fallbacks are counted by region (l,), for
-    as many as there are loops.
-    """
-
-    def wanted(points: np.ndarray, region: np.ndarray) -> np.ndarray:
-        """The target at points (n, 2) of regions (n,)."""
-        return target(points, domain[region])
-
-    with watch("division"):
-        longest, varying = target.most[domain], None if target.constant else wanted
-        points, polygons = bridge_holes(loops, region, is_hole, longest, varying)
-        division = divide(points, polygons, longest, varying)
-        if target.constant:
-            cell_target = mean_edge_lengths(division.points, division.cells)
-        else:
-            cell_target = wanted_edge_lengths(division.points, division.cells, division.owner, wanted)
-    vertices, triangles, cell, fallbacks = mesh_cells(division.points, division.cells, cell_target, watch)
-    owner = division.owner[cell]
-    sizing = grade_from_edges(loops, region, wanted)
-    vertices, triangles, parent, more = refine(vertices, triangles, owner, sizing, watch)
-    counts = np.bincount(division.owner, fallbacks, minlength=len(loops))
-    counts += np.bincount(owner, more, minlength=len(loops))
-    vertices, triangles, owner, again = improve(vertices, triangles, owner[parent], watch)
-    counts[: len(again)] += again
-    if flips:
-        with watch("flips"):
-            triangles = flip_edges(vertices, triangles)
-    if smooth:
-        with watch("smoothing"):
-            vertices = move_downhill(vertices, triangles, smooth, owner)
-    return vertices, triangles, owner, counts
-
-
 def _parts(
-    vertices: np.ndarray, triangles: np.ndarray, domain: np.ndarray, numbers: list[int]
-) -> list[tuple[np.ndarray, np.ndarray]]:
-    """The vertices and triangles of each domain by itself; vertices keep their order."""
+    meshes: RegionMeshes, domain: np.ndarray, numbers: list[int]
+) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+    """The vertices, the triangles and their regions of each domain by itself; vertices keep their order."""
     order = np.argsort(domain, kind="stable")
-    triangles, domain = triangles[order], domain[order]
+    triangles, region, domain = meshes.triangles[order], meshes.region[order], domain[order]
     starts = np.searchsorted(domain, numbers)
     ends = np.searchsorted(domain, numbers, side="right")
     parts = []
     for start, end in zip(starts, ends, strict=True):
         used, local = np.unique(triangles[start:end], return_inverse=True)
-        parts.append((vertices[used], local.reshape(-1, 3)))
+        parts.append((meshes.vertices[used], local.reshape(-1, 3), region[start:end]))
     return parts

@@ -8,11 +8,17 @@ on its neighbours in the batch, so that a contour's answer is the same in every 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import onnxruntime
+
+from .runtime import open_session
+
+if TYPE_CHECKING:
+    import onnxruntime
 
 FOLDER = Path(__file__).resolve().parents[2] / "onnx_models"
 
@@ -26,20 +32,36 @@ _KNOWN_TARGETS = 0.25, 20.0  # scaled target edge lengths that NN1 is asked abou
 _CALL_SIZE = 1 << 12
 
 
+@dataclass(frozen=True)
+class Execution:
+    """How onnxruntime runs the networks: with how many threads, and on what of its providers, if it has that."""
+
+    threads: int = 1
+    provider: str = "CPUExecutionProvider"
+
+
+_execution = Execution()
+
+
+def use(execution: Execution) -> None:
+    """Run the networks like this from now on.
+
+    Another provider than the CPU's, or another number of threads, may add up in another order: the last bits of what
+    the networks say, and so now and then an element, may differ.
+    """
+    global _execution
+    if execution != _execution:
+        _execution = execution
+        session.cache_clear()
+
+
 @cache
 def session(role: str) -> onnxruntime.InferenceSession:
-    """The session of ``nn1``, ``nn2_scores``, ``nn2_moves`` or ``nn3``; opened once."""
-    return open_session(FOLDER / f"{role}.onnx")
+    """The session of ``nn1``, ``nn2_scores``, ``nn2_moves``, ``nn2_star`` or ``nn3``; opened once.
 
-
-def open_session(file: Path) -> onnxruntime.InferenceSession:
-    """A network's file, to be asked on one thread."""
-    options = onnxruntime.SessionOptions()
-    options.log_severity_level = 3
-    options.intra_op_num_threads = 1
-    # Threads that wait by spinning slow everything else down, and calls here are many and short.
-    options.add_session_config_entry("session.intra_op.allow_spinning", "0")
-    return onnxruntime.InferenceSession(file, options, providers=["CPUExecutionProvider"])
+    Raises RuntimeProblem.
+    """
+    return open_session(FOLDER / f"{role}.onnx", _execution.threads, _execution.provider)
 
 
 def count_inner_vertices(contour: np.ndarray, n_contour: np.ndarray, l_s: np.ndarray) -> np.ndarray:
@@ -110,6 +132,23 @@ def move_inner_vertices(
         size = min(m, inner.shape[1])
         moved[rows, :size] = np.where(np.isfinite(out[:, :size]), out[:, :size], inner[rows, :size])
     return np.where((np.arange(inner.shape[1]) < n_inner[:, None])[..., None], moved, inner)
+
+
+def centre_stars(ring: np.ndarray, n_ring: np.ndarray) -> np.ndarray:
+    """NN2 of stars: the places (S, 2) of the only inner vertices of rings that are about as large as 1.
+
+    ring: (S, R + 2, 2), counter-clockwise, the last of each one's n_ring (S,) vertices before the first, the first
+    after the last, and in the padding.
+    """
+    share = np.where(np.arange(ring.shape[1] - 2) < n_ring[:, None], 1 / n_ring[:, None], 0)
+    ring, share = ring.astype(np.float32), share.astype(np.float32)[..., None]
+    # At least two in a call: onnxruntime adds up in another order where there is one.
+    rows = np.arange(max(2, len(ring))) % len(ring)
+    found = [
+        session("nn2_star").run(None, {"ring": ring[part], "share": share[part]})[0]
+        for part in np.array_split(rows, -(-len(rows) * ring.shape[1] // _CALL_SIZE))
+    ]
+    return np.concatenate(found)[: len(ring)].astype(np.float64)
 
 
 def rate_connections(

@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from .contour import edges_of
+from .crossings import close_pairs
 from .sizing import LONG
+from .spacing import Target
 
+GAP = 0.02  # of the target edge length, from which two edges of a boundary that share no vertex are close
 LOST_AREA = 0.1  # of a curve's area, from which a coarser boundary is warned of
 
 
-def long_edge_warnings(loops: list[np.ndarray], target: Callable[[np.ndarray], np.ndarray]) -> tuple[str, ...]:
-    """A warning where kept boundary edges are longer than the target, (n, 2) places -> (n,) lengths, or none."""
-    start, end = edges_of(loops)
+def long_edge_warnings(
+    start: np.ndarray, end: np.ndarray, target: Callable[[np.ndarray], np.ndarray]
+) -> tuple[str, ...]:
+    """A warning where kept edges, from start to end (e, 2), are longer than the target at places (n, 2), or none."""
     lengths = np.linalg.norm(end - start, axis=1)
     wanted = target(0.5 * (start + end))
     long = np.count_nonzero(lengths > LONG * wanted)
@@ -39,3 +43,48 @@ def lost_area_warnings(area: float, vertices: np.ndarray, triangles: np.ndarray,
         f"the target edge length {edge_length:g} is too long for the curve's shape: the mesh's area differs by "
         f"{100 * changed:.0f} %. Use a shorter one",
     )
+
+
+def gap_warnings(start: np.ndarray, end: np.ndarray, domain: np.ndarray, target: Target) -> dict[int, tuple[str, ...]]:
+    """By domain, a warning where edges that share no vertex come very near to each other.
+
+    start, end (e, 2), domain (e,): all edges; target: points (n, 2) of domains (n,) -> (n,) wanted edge lengths. Near
+    is what is a small share of that and of both edges.
+    """
+    if not len(start):
+        return {}
+    reach = GAP * np.minimum(np.linalg.norm(end - start, axis=1), target(0.5 * (start + end), domain))
+    most = np.zeros(int(domain.max()) + 1)
+    np.maximum.at(most, domain, reach)
+    unit = most[domain, None]  # each domain in its own measure, so that none makes others slow
+    found = [(np.zeros(0), np.zeros((0, 2)), domain[:0])]
+    for pairs in close_pairs(start / unit, end / unit, domain, 1.0):
+        (a, c), (b, d) = start[pairs.T], end[pairs.T]
+        joined = np.logical_or.reduce([(p == q).all(axis=1) for p in (a, b) for q in (c, d)])
+        pairs, a, b, c, d = (part[~joined] for part in (pairs, a, b, c, d))
+        ends, others = np.stack([a, b, c, d]), np.stack([c, c, a, a])
+        along = np.stack([d - c, d - c, b - a, b - a])
+        share = np.clip(((ends - others) * along).sum(-1) / (along**2).sum(-1), 0, 1)
+        apart = np.linalg.norm(ends - others - share[..., None] * along, axis=-1)
+        row = np.flatnonzero(apart.min(axis=0) < reach[pairs].min(axis=1))
+        nearest = apart[:, row].argmin(axis=0)
+        found.append((apart[nearest, row], ends[nearest, row], domain[pairs[row, 0]]))
+    gap, place, of = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    order = np.lexsort((gap, of))
+    number, first = np.unique(of[order], return_index=True)
+    return {
+        int(n): (
+            f"edges come as near to each other as {gap[k]:.2g} at ({place[k, 0]:.9g}, {place[k, 1]:.9g}), a small part "
+            "of the target edge length, and elements between them are thin: move them apart, or join them",
+        )
+        for n, k in zip(number, order[first], strict=True)
+    }
+
+
+def repeated_warnings(loops: Sequence[ArrayLike], cleaned: list[np.ndarray]) -> tuple[str, ...]:
+    """A warning where points of contours are given more than once, but for a last one that is the first again."""
+    repeated = sum(
+        len(loop) - len(clean) - int(len(loop) > len(clean) and np.array_equal(loop[0], loop[-1]))
+        for loop, clean in zip(loops, cleaned, strict=True)
+    )
+    return (f"{repeated} repeated points of contours are left out",) if repeated else ()

@@ -10,17 +10,21 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import cache, partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-import onnxruntime
 
 from . import networks
 from .closing import MOST_EDGES
 from .errors import ContourError
 from .paper_placement import GRID, decode, grid_points, patches
 from .roles import SHIPPED, Arrays, Roles
+from .runtime import open_session
 from .stopwatch import Stopwatch
 from .transform import superimpose
+
+if TYPE_CHECKING:
+    import onnxruntime
 
 FOLDER = networks.FOLDER.parent / "paper_models"
 CONNECTIONS = {"paper": "nn3", "paper*": "nn3_star"}
@@ -76,7 +80,7 @@ def _trained(role: str, folder: Path) -> frozenset[tuple[int, ...]]:
 
 @cache
 def _session(file: Path) -> onnxruntime.InferenceSession:
-    return networks.open_session(file)
+    return open_session(file)
 
 
 def _ask(file: Path, rows: np.ndarray) -> np.ndarray:

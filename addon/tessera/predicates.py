@@ -100,8 +100,9 @@ def _exact_orientation(corners: np.ndarray) -> np.ndarray:
 def segments_cross(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> np.ndarray:
     """Whether segments ab and cd have a point in common other than a shared, identical end point; exact.
 
-    a, b, c, d: (..., 2) float64, broadcast against each other, a != b and c != d -> (...) bool. Touching (an end of one
-    on the other) and overlapping count, and so does the same segment twice.
+    a, b, c, d: (..., 2) float64, broadcast against each other, a != b -> (...) bool. Touching (an end of one on the
+    other) and overlapping count, and so does the same segment twice. c = d is a point, which counts where it lies on ab
+    between its ends.
     """
     a, b, c, d = np.broadcast_arrays(*(np.asarray(p, dtype=np.float64) for p in (a, b, c, d)))
     boxes_meet = np.all((np.maximum(a, b) >= np.minimum(c, d)) & (np.maximum(c, d) >= np.minimum(a, b)), axis=-1)

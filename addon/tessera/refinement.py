@@ -9,13 +9,19 @@ edge length; NN2 recomputes the places of the inner vertices; until no edge is s
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
 from .assembly import mean_edge_lengths, mesh_cells
-from .edges import inner_edges, sides
+from .cavity import areas
+from .contour import neighbours
+from .crossings import crossing_pairs
+from .edges import among, inner_edges, off_boundary, sides
+from .finer import Arcs
 from .quality import element_quality
 from .relaxation import relax
+from .steps import Steps, within
 from .stopwatch import Stopwatch
 
 MOST_SEGMENTS = 5
@@ -30,39 +36,105 @@ _MOST_ROUNDS = 20  # five to the power of it is more than any ratio of lengths
 Sizing = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
+@dataclass(frozen=True)
+class Refined:
+    """A finer mesh: vertices (n, 2), the old ones first; triangles (t, 3); the old triangle that each is part of (t,).
+
+    fallbacks: (m,) of each old triangle; number: (n,) the point of the boundary that each vertex is, or -1; failed:
+    domains whose boundary could not be refined, and which are left as they were then.
+    """
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    parent: np.ndarray
+    fallbacks: np.ndarray
+    number: np.ndarray
+    failed: np.ndarray
+
+
 def refine(
-    vertices: np.ndarray, triangles: np.ndarray, domain: np.ndarray, sizing: Sizing, watch: Stopwatch
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Refine a mesh until its inner edges follow the sizing function.
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    domain: np.ndarray,
+    sizing: Sizing,
+    watch: Stopwatch,
+    arcs: Arcs | None = None,
+    fixed: np.ndarray | None = None,
+) -> Steps[Refined]:
+    """Refine a mesh until its inner edges follow the sizing function, and its boundary the arcs, if there are any.
 
     vertices: (n, 2); triangles: (m, 3); domain: (m,) int of each triangle; sizing: (k, 2) points and the domains (k,)
-    that they are in -> (k,) wanted edge lengths. Returns vertices, the old ones first, triangles (t, 3), the old
-    triangle that each is part of (t,), and for each of those the fallbacks (m,).
+    that they are in -> (k,) wanted edge lengths; fixed: (f, 2) edges that stay, as the boundary does without arcs.
     """
     parent = np.arange(len(triangles))
     fallbacks = np.zeros(len(triangles), dtype=np.int64)
-    for _ in range(_MOST_ROUNDS):
+    number = np.full(len(vertices), -1) if arcs is None else arcs.number
+    failed = np.zeros(0, dtype=np.int64)
+    for turn in range(_MOST_ROUNDS):
+        start, end = 1 - 0.25**turn, 1 - 0.25 ** (turn + 1)
         edges, inner = inner_edges(triangles)
-        ends = vertices[edges]
         home = np.zeros(len(vertices), dtype=np.int64)
         home[triangles] = domain[parent][:, None]
-        may_split = inner & ~_beside_slivers(vertices, triangles, edges)
+        home = home[edges[:, 0]]
+        may_split = inner & ~_beside_slivers(vertices, triangles, edges) & ~np.isin(home, failed) & ~among(edges, fixed)
         with watch("sizing"):
-            segments, wanted = _segments(ends, may_split, home[edges[:, 0]], sizing)
+            segments, wanted = _segments(vertices[edges], may_split, home, sizing)
+        if turn and segments.max(initial=1) > 1:
+            # Again, once the vertices have better places; only in domains that are not done, as if each were alone.
+            unfinished = np.isin(home, home[segments > 1])
+            rows = np.isin(domain[parent], home[unfinished])
+            free = off_boundary(triangles, len(vertices), fixed)
+            relaxation = relax(vertices, triangles[rows], domain[parent[rows]], free, 1, watch)
+            vertices = yield from within(relaxation, start, start)
+            with watch("sizing"):
+                segments, wanted = _segments(vertices[edges], may_split & unfinished, home, sizing)
+        points, places = _inserted(vertices[edges], segments, wanted), np.full((segments - 1).sum(), -1)
+        if arcs is not None:
+            segments, points, places = _with_arcs(arcs, edges, ~inner, segments, points)
         if segments.max(initial=1) == 1:
             break
-        points, cells = _sub_contours(vertices, triangles, edges, segments, wanted)
+        points = np.concatenate([vertices, points])
+        cells = _sub_contours(len(vertices), triangles, edges, segments)
         split = (cells[:, 3:] >= 0).any(axis=1)
-        vertices, new, owner, fell = mesh_cells(points, cells[split], mean_edge_lengths(points, cells[split]), watch)
+        if arcs is not None:
+            arcs, bad = None, _not_simple(points, cells, split)
+            failed = np.unique(domain[parent[bad]])
+            split &= ~np.isin(domain[parent], failed)
+        meshing = mesh_cells(points, cells[split], mean_edge_lengths(points, cells[split]), watch)
+        vertices, new, owner, fell = yield from within(meshing, start, end)
+        number = np.concatenate([number, places, np.full(len(vertices) - len(points), -1)])
         np.add.at(fallbacks, parent[split], fell)
         parent = np.concatenate([parent[~split], parent[split][owner]])
         triangles = np.concatenate([triangles[~split], new])
-        # Only domains that were split, so that each goes the same way as it would alone.
-        of = domain[parent]
-        changed = np.isin(of, of[-len(new) :])
-        with watch("relaxation"):
-            vertices = relax(vertices, triangles[changed], of[changed], passes=1)
-    return vertices, triangles, parent, fallbacks
+    return Refined(vertices, triangles, parent, fallbacks, number, failed)
+
+
+def _with_arcs(
+    arcs: Arcs, edges: np.ndarray, on_boundary: np.ndarray, segments: np.ndarray, points: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Segments (e,), and inserted points and the boundary's points that they are, where boundary edges are split, too.
+
+    segments, points: without these.
+    """
+    inserted, between = arcs.between(edges[on_boundary])
+    old, segments = segments, segments.copy()
+    segments[on_boundary] = inserted + 1
+    of_arc = np.repeat(on_boundary, segments - 1)
+    all_points, places = np.zeros((len(of_arc), 2)), np.full(len(of_arc), -1)
+    all_points[of_arc], places[of_arc] = arcs.points[between], between
+    all_points[~of_arc] = points[np.repeat(~on_boundary, old - 1)]
+    return segments, all_points, places
+
+
+def _not_simple(points: np.ndarray, cells: np.ndarray, split: np.ndarray) -> np.ndarray:
+    """Rows of cells (m, 15) that are no simple counter-clockwise polygons, of those that are split."""
+    rows = np.flatnonzero(split)
+    count = (cells[rows] >= 0).sum(axis=1)
+    corners, row = cells[rows][cells[rows] >= 0], np.repeat(rows, count)
+    _, after = neighbours(count)
+    pairs = crossing_pairs(points[corners], points[corners[after]], row)
+    reversed_ = areas(points[cells[rows]], count) <= 0
+    return np.concatenate([row[pairs[:, 0]], rows[reversed_]])
 
 
 def _segments(
@@ -89,33 +161,38 @@ def _beside_slivers(vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarr
     return np.isin(edges[:, 0] * stride + edges[:, 1], a * stride + b)
 
 
-def _sub_contours(
-    vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray, segments: np.ndarray, wanted: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Insert vertices on the edges: all points (p, 2), and each triangle's contour (m, 15), padded with -1.
+def _inserted(ends: np.ndarray, segments: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Vertices (k, 2) that divide edges (e, 2, 2) into segments (e,), each edge's from its start to its end.
 
-    segments: (e,) how many each edge comes to; wanted: (e, 5) lengths at `_STATIONS`.
+    wanted: (e, 5) lengths at `_STATIONS`.
     """
-    n = len(vertices)
-    edge = np.repeat(np.arange(len(edges)), segments - 1)
-    first = np.cumsum(segments - 1) - (segments - 1)
-    step = np.arange(len(edge)) - first[edge] + 1
-    start, end = vertices[edges[edge, 0]], vertices[edges[edge, 1]]
-    passed = np.concatenate([np.zeros((len(edges), 1)), np.cumsum(1 / wanted, axis=1)], axis=1)
+    edge = np.repeat(np.arange(len(ends)), segments - 1)
+    step = np.arange(len(edge)) - (np.cumsum(segments - 1) - (segments - 1))[edge] + 1
+    start, end = ends[edge, 0], ends[edge, 1]
+    passed = np.concatenate([np.zeros((len(ends), 1)), np.cumsum(1 / wanted, axis=1)], axis=1)
     reached = passed[edge, -1] * (step / segments[edge])
     part = np.minimum(np.sum(passed[edge] <= reached[:, None], axis=1) - 1, len(_STATIONS) - 1)
     share = (part + (reached - passed[edge, part]) * wanted[edge, part]) / len(_STATIONS)
-    inserted = start + share[:, None] * (end - start)
+    return start + share[:, None] * (end - start)
+
+
+def _sub_contours(n: int, triangles: np.ndarray, edges: np.ndarray, segments: np.ndarray) -> np.ndarray:
+    """Each triangle's contour (m, 15), padded with -1, when its edges are split; inserted vertices count from n on.
+
+    segments: (e,) how many each edge comes to.
+    """
+    first = np.cumsum(segments - 1) - (segments - 1)
+    most = max(MOST_SEGMENTS, int(segments.max()))
     stride = int(triangles.max()) + 1
     key = edges[:, 0] * stride + edges[:, 1]
-    cells = np.full((len(triangles), 3, MOST_SEGMENTS), -1, dtype=np.int64)
+    cells = np.full((len(triangles), 3, most), -1, dtype=np.int64)
     cells[:, :, 0] = triangles
     for side in range(3):
         a, b = triangles[:, side], triangles[:, (side + 1) % 3]
         of = np.searchsorted(key, np.minimum(a, b) * stride + np.maximum(a, b))
-        for k in range(1, MOST_SEGMENTS):
+        for k in range(1, most):
             here = np.where(a < b, k - 1, segments[of] - 1 - k)
             cells[:, side, k] = np.where(k < segments[of], n + first[of] + here, -1)
     cells = cells.reshape(len(triangles), -1)
     order = np.argsort(cells < 0, axis=1, kind="stable")
-    return np.concatenate([vertices, inserted]), np.take_along_axis(cells, order, axis=1)
+    return np.take_along_axis(cells, order, axis=1)[:, :15]

@@ -7,65 +7,95 @@ together are never neighbours, so no move can spoil another and elements stay va
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from . import networks
-from .cavity import next_vertices
 from .quality import quality_of_sides
 from .stars import Stars, find_independent_stars, total_in_turn
-from .transform import superimpose
+from .steps import Progress, Steps
+from .stopwatch import Stopwatch
 
-LARGEST_STAR = 16
-# A vertex on the straight cut between two cells is often in a local optimum of its own; a few passes spread the error.
-PASSES = 3
-_GAIN = 2e-3  # in worst and mean quality added: less is not worth a move
+_PADDED = 0, 8, 16  # sizes that rings are padded to
+_GAIN = 2e-4  # in worst and mean quality added: less is not worth a move
 
 
 def relax(
     vertices: np.ndarray,
     triangles: np.ndarray,
     domain: np.ndarray,
-    passes: int = PASSES,
+    free: np.ndarray,
+    passes: int,
+    watch: Stopwatch,
     disturbed: np.ndarray | None = None,
-) -> np.ndarray:
-    """Better places for the vertices of a mesh that are off its boundary: (n, 2); the others stay.
+) -> Steps[np.ndarray]:
+    """Better places for the free vertices of a mesh: (n, 2); the others stay.
 
     vertices: (n, 2); triangles: (m, 3); domain: (m,) int, the domain of each triangle: the vertices of each are
-    numbered by themselves, so that a domain is relaxed alike alone and in a batch. disturbed: (n,) bool, vertices near
-    which there is something to relax; all, if not given.
+    numbered by themselves, so that a domain is relaxed alike alone and in a batch; free: (n,) bool, none on the
+    boundary; disturbed: (n,) bool, vertices near which there is something to relax; all, if not given.
     """
-    sets = find_independent_stars(triangles, domain, len(vertices), LARGEST_STAR)
+    with watch("relaxation"):
+        if disturbed is None:
+            disturbed = free
+        else:  # a pass goes no farther than to the neighbours
+            reached = disturbed
+            for _ in range(passes):
+                reached = _with_neighbours(reached, triangles)
+            free = free & reached
+            near = free[triangles].any(axis=1)
+            triangles, domain = triangles[near], domain[near]
+        sets = find_independent_stars(triangles, domain, free, _PADDED[-1])
     vertices = vertices.copy()
-    if disturbed is None:
-        disturbed = np.ones(len(vertices), dtype=bool)
-    for _ in range(passes):
-        moved = np.zeros(len(vertices), dtype=bool)
-        for independent in sets:
-            around = disturbed[independent.ring] | moved[independent.ring]
-            stars = independent.rows(disturbed[independent.centre] | around.any(axis=1))
-            if len(stars.centre):
-                places, better = _better_places(vertices, stars)
-                vertices[stars.centre[better]], moved[stars.centre] = places[better], better
-        disturbed = moved
+    for step in range(passes):
+        with watch("relaxation"):
+            disturbed = _pass(vertices, sets, disturbed)
+        yield Progress("relaxation", (step + 1) / passes)
     return vertices
 
 
-def _better_places(vertices: np.ndarray, stars: Stars) -> tuple[np.ndarray, np.ndarray]:
-    """New places (S, 2) of the stars' centres, and whether each is better than the old one."""
-    contour, old = vertices[stars.ring], vertices[stars.centre]
-    transformation = superimpose(contour, stars.n_ring)
-    moved = networks.move_inner_vertices(
-        transformation.apply(contour), stars.n_ring, transformation.apply(old[:, None]), np.ones_like(stars.n_ring)
-    )
-    new = transformation.invert(moved)[:, 0]
-    before, after = _star_quality(contour, stars.n_ring, old), _star_quality(contour, stars.n_ring, new)
+def _with_neighbours(chosen: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """Some vertices (n,) and those that share an element with one."""
+    more = chosen.copy()
+    more[triangles[chosen[triangles].any(axis=1)]] = True
+    return more
+
+
+def _pass(vertices: np.ndarray, sets: list[Stars], disturbed: np.ndarray) -> np.ndarray:
+    """Move vertices (n, 2), in place, that are or are beside what is disturbed or moves; returns which moved (n,)."""
+    moved = np.zeros(len(vertices), dtype=bool)
+    for independent in sets:
+        around = disturbed[independent.ring] | moved[independent.ring]
+        stars = independent.rows(disturbed[independent.centre] | around.any(axis=1))
+        for low, high in pairwise(_PADDED):
+            rows = np.flatnonzero((stars.n_ring > low) & (stars.n_ring <= high))
+            if len(rows):
+                centre = stars.centre[rows]
+                places, better = _better_places(vertices, stars.rows(rows), high)
+                vertices[centre[better]], moved[centre] = places[better], better
+    return moved
+
+
+def _better_places(vertices: np.ndarray, stars: Stars, size: int) -> tuple[np.ndarray, np.ndarray]:
+    """New places (S, 2) of the stars' centres, and whether each is better than the old one; size: to pad rings to."""
+    old, n = vertices[stars.centre], stars.n_ring
+    # The last vertex before the first, and the first in all that is left.
+    ring = np.repeat(stars.ring[:, :1], size + 2, axis=1)
+    width = min(size, stars.ring.shape[1])
+    ring[:, 1 : width + 1], ring[:, 0] = stars.ring[:, :width], stars.ring[np.arange(len(n)), n - 1]
+    # Beside the old place and the size, so that no coordinate is too large or too small for single precision.
+    around = vertices[ring] - old[:, None]
+    scale = np.abs(around).max(axis=(1, 2))[:, None]
+    around /= scale[:, None]
+    move = networks.centre_stars(around, n)
+    before, after = _star_quality(around, n), _star_quality(around - move[:, None], n)
     better = after.sum(axis=0) > before.sum(axis=0) + _GAIN
-    return new, better & (after[0] > np.minimum(before[0], 0.3))
+    return old + scale * move, better & (after[0] > np.minimum(before[0], 0.3))
 
 
-def _star_quality(ring: np.ndarray, n_ring: np.ndarray, centre: np.ndarray) -> np.ndarray:
-    """(2, S) worst and mean quality of the elements that each centre (S, 2) forms with its ring (S, R, 2)."""
-    real = np.arange(ring.shape[1]) < n_ring[:, None]
-    a, b = ring - centre[:, None], next_vertices(ring, n_ring) - centre[:, None]
-    quality = quality_of_sides(a, b)
+def _star_quality(around: np.ndarray, n_ring: np.ndarray) -> np.ndarray:
+    """(2, S) worst and mean quality of the elements that each centre forms with the wrapped ring around it."""
+    real = np.arange(around.shape[1] - 2) < n_ring[:, None]
+    quality = quality_of_sides(around[:, 1:-1], around[:, 2:])
     return np.stack([np.where(real, quality, 1).min(axis=1), total_in_turn(np.where(real, quality, 0)) / n_ring])

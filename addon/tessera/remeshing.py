@@ -1,135 +1,129 @@
-"""The scheme once more, on the cavities around a large mesh's poor elements.
+"""The scheme once more, on patches around a large mesh's poor elements and irregular vertices.
 
-What the division cut apart may fit badly where cells meet. The elements around the free vertices of a poor element are
-taken out; what is left is a contour, meshed by the scheme like any other, across whatever seam was there. The new
-elements stay where their worst and mean quality, added, are better.
+What the division cut apart may fit badly where cells meet. The elements of a patch are taken out; what is left is a
+contour, meshed by the scheme like any other, across whatever seam was there: with as many inner vertices as NN1 asks
+for, and with one less and one more. The best of the three stays, if it is better than the elements that were there.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
 from .assembly import mean_edge_lengths, mesh_cells
 from .edges import off_boundary
+from .patches import find_patches
 from .quality import element_quality
 from .relaxation import relax
-from .scheme import LARGEST_CONTOUR
+from .steps import Steps, within
 from .stopwatch import Stopwatch
 
-ROUNDS = 3
-POOR = 0.85  # elements of less quality are worth a try
-_GAIN = 1e-2  # in worst and mean quality added
+TURNS = 4
+POOR = 0.93  # elements of less quality are worth a try
+_MORE = np.array([0, -1, 1])  # inner vertices than NN1 asks for
+# What a patch is worth: its worst quality, and so many times its mean; a new one has to be better by the gain.
+_MEAN, _GAIN = 3, 6e-3
+_RELAXED = 0.3  # share of the work that is done after the first relaxation
 
 
 def improve(
-    vertices: np.ndarray, triangles: np.ndarray, domain: np.ndarray, watch: Stopwatch
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Relax a mesh, then mesh its poor cavities again and relax, a few times.
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    domain: np.ndarray,
+    passes: int,
+    watch: Stopwatch,
+    fixed: np.ndarray | None = None,
+) -> Steps[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
+    """Relax a mesh, then mesh its poor patches again and relax, a few times.
 
-    vertices: (n, 2); triangles: (m, 3); domain: (m,) int from 0: each domain is treated as it would be alone. Returns
+    vertices: (n, 2); triangles: (m, 3); domain: (m,) int from 0: each domain is treated as it would be alone;
+    passes: of relaxation; fixed: (f, 2) edges that stay, as the boundary does. Returns
     the same of the better mesh, where vertices that it has no use for stay, and the fallbacks of each domain.
     """
     fallbacks = np.zeros(int(domain.max()) + 1, dtype=np.int64)
-    with watch("relaxation"):
-        vertices = relax(vertices, triangles, domain)
-    active = np.ones(len(domain), dtype=bool)
-    for _ in range(ROUNDS):
-        vertices, new, of, replaced, homes, fell = _remesh(vertices, triangles[active], domain[active], watch)
-        triangles, domain = np.concatenate([triangles[~active], new]), np.concatenate([domain[~active], of])
-        np.add.at(fallbacks, homes, fell)
-        active = np.isin(domain, homes)
-        if not active.any():
+    free = off_boundary(triangles, len(vertices), fixed)
+    vertices = yield from within(relax(vertices, triangles, domain, free, passes, watch), 0.0, _RELAXED)
+    tried = np.zeros(len(vertices), dtype=bool), np.zeros(len(vertices), dtype=bool)
+    for turn in range(TURNS):
+        quality = element_quality(vertices, triangles)
+        contours, patch, kind = find_patches(triangles, quality, free, tried, POOR, fixed)
+        if not len(contours):
             break
-        disturbed = np.zeros(len(vertices), dtype=bool)
-        disturbed[replaced] = True
-        with watch("relaxation"):
-            vertices = relax(vertices, triangles, domain, disturbed=disturbed)
+        for number in (0, 1):
+            tried[number][triangles[(patch >= 0) & (kind[patch] == number)]] = True
+        start, end = (_RELAXED + (1 - _RELAXED) * (turn + n) / TURNS for n in (0, 1))
+        remesh = _remesh(vertices, triangles, domain, quality, contours, patch, watch)
+        found = yield from within(remesh, start, end)
+        np.add.at(fallbacks, found.homes, found.fallbacks)
+        triangles, domain = found.triangles, found.domain
+        disturbed = np.zeros(len(found.vertices), dtype=bool)
+        disturbed[found.replaced] = True
+        free = np.append(free, np.ones(len(disturbed) - len(free), dtype=bool))
+        relaxation = relax(found.vertices, triangles, domain, free, passes, watch, disturbed)
+        vertices = yield from within(relaxation, end, end)
+        disturbed |= (vertices != found.vertices).any(axis=1)
+        tried = tuple(np.append(one, ~disturbed[len(one) :]) & ~disturbed for one in tried)
     return vertices, triangles, domain, fallbacks
 
 
+@dataclass(frozen=True)
+class _Remeshed:
+    """A mesh after a turn; replaced: the vertices of new elements; homes, fallbacks: (b,) of each patch made better."""
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    domain: np.ndarray
+    replaced: np.ndarray
+    homes: np.ndarray
+    fallbacks: np.ndarray
+
+
 def _remesh(
-    vertices: np.ndarray, triangles: np.ndarray, domain: np.ndarray, watch: Stopwatch
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Mesh poor cavities again, once.
-
-    Returns vertices, triangles and their domains; then, of the cavities that this made better, the elements' vertices,
-    and the domain and the fallbacks of each.
-    """
-    quality = element_quality(vertices, triangles)
-    contours, cavity = _contours(triangles, _cavities(triangles, quality, off_boundary(triangles, len(vertices))))
-    if not len(contours):
-        return vertices, triangles, domain, domain[:0], domain[:0], domain[:0]
-    taken = np.flatnonzero(cavity >= 0)
-    points, new, owner, fell = mesh_cells(vertices, contours, mean_edge_lengths(vertices, contours), watch)
-    before = _worst_and_mean(quality[taken], cavity[taken], len(contours)).sum(axis=0)
-    after = _worst_and_mean(element_quality(points, new), owner, len(contours)).sum(axis=0)
-    better = after > before + _GAIN
-    home = np.zeros(len(contours), dtype=domain.dtype)
-    home[cavity[taken]] = domain[taken]
-    stay, come = ~((cavity >= 0) & better[cavity]), better[owner]
-    triangles = np.concatenate([triangles[stay], new[come]])
-    domain = np.concatenate([domain[stay], home[owner[come]]])
-    return points, triangles, domain, new[come].ravel(), home[better], fell[better]
-
-
-def _cavities(triangles: np.ndarray, quality: np.ndarray, free: np.ndarray) -> np.ndarray:
-    """(m,) number of the cavity that each element is taken into, or -1: no two cavities share an element.
-
-    The cavity of a poor element is all elements around its free vertices. Where cavities meet, the worse one's stays.
-    """
-    poor = np.flatnonzero((quality < POOR) & free[triangles].any(axis=1))
-    poor = poor[np.argsort(quality[poor], kind="stable")]
-    rank_at = np.full(len(free), len(poor))  # of the worst poor element that wants the elements around a vertex
-    corners = np.where(free[triangles[poor]], triangles[poor], -1)
-    for corner in corners.T:
-        np.minimum.at(rank_at, corner[corner >= 0], np.flatnonzero(corner >= 0))
-    wanted_by = rank_at[triangles]
-    best = wanted_by.min(axis=1)
-    # A poor element gets its cavity if no element of it is wanted more by another one.
-    spoiled = np.zeros(len(poor) + 1, dtype=bool)
-    for corner in wanted_by.T:
-        spoiled[corner[corner > best]] = True
-    for corner in corners.T:
-        lost = (corner >= 0) & (rank_at[corner] != np.arange(len(poor)))
-        spoiled[:-1] |= lost
-    spoiled[-1] = True
-    return np.where(spoiled[best], -1, best)
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    domain: np.ndarray,
+    quality: np.ndarray,
+    contours: np.ndarray,
+    patch: np.ndarray,
+    watch: Stopwatch,
+) -> Steps[_Remeshed]:
+    """Mesh patches (c, N) again, once; patch: (m,) the one that each element is in, or -1."""
+    n, taken = len(contours), np.flatnonzero(patch >= 0)
+    cells = np.tile(contours, (len(_MORE), 1))
+    more = np.repeat(_MORE, n)
+    lengths = mean_edge_lengths(vertices, cells)
+    points, new, cell, fell = yield from mesh_cells(vertices, cells, lengths, watch, more)
+    before = _worth(quality[taken], patch[taken], n)
+    after = _worth(element_quality(points, new), cell, len(cells)).reshape(len(_MORE), n)
+    best = after.argmax(axis=0)
+    better = np.flatnonzero(after.max(axis=0) > before + _GAIN)
+    chosen = best[better] * n + better
+    come = np.isin(cell, chosen)
+    home = np.zeros(n, dtype=domain.dtype)
+    home[patch[taken]] = domain[taken]
+    stay = ~np.isin(patch, better)
+    points, new = _without_unused(points, new[come], len(vertices))
+    return _Remeshed(
+        points,
+        np.concatenate([triangles[stay], new]),
+        np.concatenate([domain[stay], home[cell[come] % n]]),
+        new.ravel(),
+        home[better],
+        fell[chosen],
+    )
 
 
-def _contours(triangles: np.ndarray, cavity: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The contours of cavities (c, N), padded with -1, and the cavities (m,) numbered anew; unfit ones are dropped.
-
-    A cavity is fit if its boundary is one cycle that visits no vertex twice and has at most 16 edges.
-    """
-    inside = np.flatnonzero(cavity >= 0)
-    start = triangles[inside].ravel().astype(np.int64)
-    end = np.roll(triangles[inside], -1, axis=1).ravel().astype(np.int64)
-    label = np.repeat(cavity[inside], 3)
-    stride = int(triangles.max(initial=0)) + 1
-    here, back = ((label * stride + a) * stride + b for a, b in ((start, end), (end, start)))
-    outline = ~np.isin(here, back)
-    label, start, end = label[outline], start[outline], end[outline]
-    order = np.lexsort((start, label))
-    label, start, end = label[order], start[order], end[order]
-    numbers, first, count = np.unique(label, return_index=True, return_counts=True)
-    key = label * stride + start
-    following = np.minimum(np.searchsorted(key, label * stride + end), len(key) - 1)
-    contours = np.full((len(numbers), LARGEST_CONTOUR), -1, dtype=np.int64)
-    at, length = first, np.zeros(len(numbers), dtype=np.int64)
-    for k in range(LARGEST_CONTOUR):
-        contours[:, k] = np.where(k < count, start[at], -1)
-        at = following[at]
-        length = np.where((length == 0) & (at == first), k + 1, length)
-    repeated = np.zeros(len(numbers), dtype=bool)
-    repeated[np.searchsorted(numbers, label[1:][key[1:] == key[:-1]])] = True
-    fit = (length == count) & ~repeated
-    anew = np.full(int(cavity.max(initial=-1)) + 2, -1)
-    anew[numbers[fit]] = np.arange(fit.sum())
-    return contours[fit], anew[cavity]
+def _without_unused(points: np.ndarray, triangles: np.ndarray, first: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points and triangles without those points from `first` on that no triangle has."""
+    used = np.ones(len(points), dtype=bool)
+    used[first:] = False
+    used[triangles] = True
+    return points[used], (np.cumsum(used) - 1)[triangles]
 
 
-def _worst_and_mean(quality: np.ndarray, owner: np.ndarray, count: int) -> np.ndarray:
-    """(2, count) worst and mean quality of the elements of each owner."""
+def _worth(quality: np.ndarray, owner: np.ndarray, count: int) -> np.ndarray:
+    """(count,) worst and `_MEAN` times the mean quality of the elements of each owner, added."""
     worst = np.ones(count)
     np.minimum.at(worst, owner, quality)
-    return np.stack([worst, np.bincount(owner, quality, count) / np.maximum(np.bincount(owner, minlength=count), 1)])
+    return worst + _MEAN * np.bincount(owner, quality, count) / np.maximum(np.bincount(owner, minlength=count), 1)

@@ -9,13 +9,14 @@ import numpy as np
 from .flips import flip_edges
 from .placement import MOST_INNER
 from .roles import SHIPPED, Roles
+from .steps import Progress, Steps, finish
 from .stopwatch import Stopwatch
 from .transform import superimpose
 from .triangulation import triangulate
 
 LARGEST_CONTOUR = 16
 # Contours that are on their way at a time: a few kB each, times what a stage holds beside them.
-_PIECE = 1 << 13
+_PIECE = 1 << 10
 
 
 @dataclass(frozen=True)
@@ -38,24 +39,47 @@ def mesh_contours(
     flips: bool = False,
     roles: Roles = SHIPPED,
 ) -> ContourMeshes:
+    """`contours_in_steps`, at once; flips: whether `flips.flip_edges` passes over the meshes in the end."""
+    return finish(contours_in_steps(contours, n_contour, edge_length, watch, flips=flips, roles=roles))
+
+
+def contours_in_steps(
+    contours: np.ndarray,
+    n_contour: np.ndarray,
+    edge_length: np.ndarray,
+    watch: Stopwatch,
+    *,
+    flips: bool = False,
+    more: np.ndarray | None = None,
+    roles: Roles = SHIPPED,
+) -> Steps[ContourMeshes]:
     """Mesh contours, each at its own target edge length.
 
     contours: (B, N, 2) float64, simple and counter-clockwise, n_contour (B,) vertices each, 3 to 16, then padding of
-    any value; edge_length: (B,); flips: whether `flips.flip_edges` passes over the meshes in the end;
-    roles: the networks that are asked. A large batch goes through in pieces, so that memory grows by no more than the
-    meshes.
+    any value; edge_length: (B,); more: (B,) inner vertices more, or less, than NN1 asks for; roles: the networks that
+    are asked. A large batch goes through in pieces, so that memory grows by no more than the meshes.
     """
-    pieces = [
-        _mesh_piece(contours[rows], n_contour[rows], edge_length[rows], watch, flips, roles)
-        for rows in (slice(first, first + _PIECE) for first in range(0, max(1, len(contours)), _PIECE))
-    ]
+    if more is None:
+        more = np.zeros(len(contours), dtype=np.int64)
+    pieces = []
+    for first in range(0, max(1, len(contours)), _PIECE):
+        rows = slice(first, first + _PIECE)
+        part = contours[rows], n_contour[rows], edge_length[rows]
+        pieces.append(_mesh_piece(*part, watch, flips, more[rows], roles))
+        yield Progress("networks", min(1.0, (first + _PIECE) / max(1, len(contours))))
     return pieces[0] if len(pieces) == 1 else _join(pieces)
 
 
 def _mesh_piece(
-    contours: np.ndarray, n_contour: np.ndarray, edge_length: np.ndarray, watch: Stopwatch, flips: bool, roles: Roles
+    contours: np.ndarray,
+    n_contour: np.ndarray,
+    edge_length: np.ndarray,
+    watch: Stopwatch,
+    flips: bool,
+    more: np.ndarray,
+    roles: Roles,
 ) -> ContourMeshes:
-    """`mesh_contours` for all at a time."""
+    """`contours_in_steps` for all at a time."""
     # Padding of any value: the first vertex again.
     padding = np.arange(contours.shape[1]) >= n_contour[:, None]
     contours = np.where(padding[..., None], contours[:, :1], contours)
@@ -64,7 +88,7 @@ def _mesh_piece(
         transformed = transformation.apply(contours)
         l_s = edge_length * transformation.scale
     with watch("NN1"):
-        wanted = roles.count(transformed, n_contour, l_s)
+        wanted = np.maximum(roles.count(transformed, n_contour, l_s) + more, 0)
     places, n_inner = roles.place(transformed, n_contour, np.minimum(wanted, MOST_INNER), l_s, watch)
     inner = transformation.invert(places)
     with watch("triangulation"):

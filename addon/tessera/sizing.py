@@ -6,6 +6,7 @@ functions here returns; `smallest` joins any of them.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -24,17 +25,15 @@ _BLOCK = 1 << 22  # distances held at a time
 
 
 def grade_from_edges(
-    polygons: list[np.ndarray], owner: np.ndarray, target: Callable[[np.ndarray, np.ndarray], np.ndarray]
+    starts: np.ndarray, ends: np.ndarray, of: np.ndarray, target: Callable[[np.ndarray, np.ndarray], np.ndarray]
 ) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
     """The target everywhere, but larger beside boundary edges that are longer and may not be split.
 
-    polygons: (k, 2) arrays, as they will be in the mesh; owner: the number of the mesh that each bounds; target: points
-    (n, 2) of meshes (n,) -> (n,) wanted edge lengths. A mesh knows nothing of the others' edges, wherever they are.
-    Without long edges the function is the target.
+    starts, ends: (e, 2) of the edges; of: (e,) the number of the mesh that each is part of; target: points (n, 2) of
+    meshes (n,) -> (n,) wanted edge lengths. A mesh knows nothing of the others' edges, wherever they are. Without long
+    edges the function is the target.
     """
-    starts, ends = edges_of(polygons)
     lengths = np.linalg.norm(ends - starts, axis=1)
-    of = np.repeat(owner, [len(polygon) for polygon in polygons])
     long = np.flatnonzero(lengths > LONG * target(0.5 * (starts + ends), of))
     long = long[np.argsort(of[long], kind="stable")]
     starts, edges, lengths = starts[long], (ends - starts)[long], lengths[long]
@@ -177,10 +176,17 @@ def by_thickness(elements: float = 3) -> FromLoops:
     elements = positive(elements, "by_thickness's number of elements")
 
     def prepare(loops: list[np.ndarray], limits: Limits) -> list[Part]:
+        # A hole that another region fills is none, and there is nothing across between the two.
+        places = [frozenset(map(tuple, loop.tolist())) for loop in loops]
+        count = Counter(places)
+        loops = [loop for loop, own in zip(loops, places, strict=True) if count[own] % 2]
         holes = set(nesting(loops).holes.tolist())
         turned = [loop[::-1] if number in holes else loop for number, loop in enumerate(loops)]
         start, end = edges_of(turned)
         here, there = thin_parts(start, end, elements, limits.longest, limits.shortest_found)
+        # Contours that lie beside each other have nothing in between.
+        apart = np.linalg.norm(there - here, axis=1) > 1e-9 * np.ptp(start, axis=0).max()
+        here, there = here[apart], there[apart]
         across = np.linalg.norm(there - here, axis=1) / elements
         return [_places(here, there, np.maximum(across, limits.shortest_found), limits.slope)]
 

@@ -10,8 +10,11 @@ from __future__ import annotations
 import numpy as np
 
 from .cavity import next_vertices
+from .edges import off_boundary
 from .quality import quality_of_sides
 from .stars import Stars, find_independent_stars, total_in_turn
+from .steps import Progress, Steps, finish
+from .stopwatch import Stopwatch
 
 _LARGEST_STAR = 32
 # Steps along the slope that are tried, in mean edge lengths of the star.
@@ -20,29 +23,45 @@ _POOR = 0.1  # quality below which the energy goes on linearly
 _FLAT = 1e-9  # quality far above its rounding
 
 
-def checked_steps(steps: int) -> int:
+def checked_steps(steps: int, name: str = "smooth") -> int:
     """A number of steps; raises ValueError unless it is a whole number, 0 or more."""
     if not isinstance(steps, (int, np.integer)) or steps < 0:
-        raise ValueError(f"smooth is how often every vertex may move, a whole number of 0 or more, not {steps!r}")
+        raise ValueError(f"{name} is how often every vertex may move, a whole number of 0 or more, not {steps!r}")
     return int(steps)
 
 
 def smooth(vertices: np.ndarray, triangles: np.ndarray, steps: int, domain: np.ndarray | None = None) -> np.ndarray:
+    """`smooth_in_steps`, at once; without domains all are one."""
+    if domain is None:
+        domain = np.zeros(len(triangles), dtype=np.int64)
+    return finish(smooth_in_steps(vertices, triangles, steps, domain, Stopwatch()))
+
+
+def smooth_in_steps(
+    vertices: np.ndarray,
+    triangles: np.ndarray,
+    steps: int,
+    domain: np.ndarray,
+    watch: Stopwatch,
+    fixed: np.ndarray | None = None,
+) -> Steps[np.ndarray]:
     """Better places for the vertices of meshes that are off the boundary, (n, 2); the others stay.
 
     vertices: (n, 2) float64; triangles: (m, 3) int, counter-clockwise; steps: how often every vertex may move, but for
     those with more than 32 neighbours; domain: (m,) int, of a batch: what is done to one domain's mesh does not depend
-    on the others. Raises ValueError as `checked_steps`.
+    on the others; fixed: (f, 2) edges whose vertices stay too. Raises ValueError as `checked_steps`.
     """
     steps, vertices = checked_steps(steps), np.array(vertices, dtype=np.float64)
     if not (steps and len(triangles)):
         return vertices
-    if domain is None:
-        domain = np.zeros(len(triangles), dtype=np.int64)
-    sets = find_independent_stars(triangles, domain, len(vertices), _LARGEST_STAR)
-    for _ in range(steps):
-        for independent in sets:
-            vertices[independent.centre] = _downhill(vertices, independent)
+    with watch("smoothing"):
+        free = off_boundary(triangles, len(vertices), fixed)
+        sets = find_independent_stars(triangles, domain, free, _LARGEST_STAR)
+    for step in range(steps):
+        with watch("smoothing"):
+            for independent in sets:
+                vertices[independent.centre] = _downhill(vertices, independent)
+        yield Progress("smoothing", (step + 1) / steps)
     return vertices
 
 

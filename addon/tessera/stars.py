@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .edges import off_boundary
-
 
 @dataclass(frozen=True)
 class Stars:
@@ -47,14 +45,14 @@ def find_stars(triangles: np.ndarray, free: np.ndarray, largest: int) -> Stars:
     return Stars(centre[start], ring, count)
 
 
-def find_independent_stars(triangles: np.ndarray, domain: np.ndarray, n_vertices: int, largest: int) -> list[Stars]:
-    """The stars of all vertices that are off the boundary, in sets without neighbours, for each domain as it is alone.
+def find_independent_stars(triangles: np.ndarray, domain: np.ndarray, free: np.ndarray, largest: int) -> list[Stars]:
+    """The stars of ``free`` (n,) vertices in sets without neighbours, for each domain as it is alone.
 
-    triangles: (m, 3) counter-clockwise; domain: (m,) int, of each triangle; stars of over ``largest`` edges are left
-    out.
+    triangles: (m, 3) counter-clockwise, all that are around the free vertices; domain: (m,) int, of each triangle;
+    stars of over ``largest`` edges are left out.
     """
-    stars = find_stars(triangles, off_boundary(triangles, n_vertices), largest)
-    number = _numbers_by_domain(triangles, domain, n_vertices)
+    stars = find_stars(triangles, free, largest)
+    number = _numbers_by_domain(triangles, domain, len(free))
     return [stars.rows(rows) for rows in independent_sets(stars, number)]
 
 

@@ -103,10 +103,10 @@ def triangulate(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, 
     vertices strictly inside, then padding of any value; n_contour, n_inner: (B,) int. connect: NN3, a function of
     points, n_contour and n_inner of contours in the same form, and of the entries that are possible elements (P, 3)
     int64, sorted (contour, facet, vertex) -> (P, 2) float64, their (q_worst, q_mean). It is asked once for all contours
-    of a level of the recursion that `close` leaves, whose edges can be as many as a contour has vertices; contours of up to 32, up to 64
-    and more vertices, and parts of a large batch, go separately. Coordinates are within 1e±100, as `contour.py` sees
-    to. Raises ValueError where no element is possible or the number of elements is not N_C + 2 N_I - 2, which is so
-    only if a contour is not as described; other such contours may go unnoticed.
+    of a level of the recursion that `close` leaves, whose edges can be as many as a contour has vertices; contours of
+    up to 32, up to 64 and more vertices, and parts of a large batch, go separately. Coordinates are within 1e±100, as
+    `contour.py` sees to. Raises ValueError where no element is possible or the number of elements is not
+    N_C + 2 N_I - 2, which is so only if a contour is not as described; other such contours may go unnoticed.
     """
     n_rows, width = points.shape[:2]
     n_contour, n_inner = np.asarray(n_contour, dtype=np.int64), np.asarray(n_inner, dtype=np.int64)

@@ -1,5 +1,8 @@
 """An empty Blender file, with the add-on registered, around every test; and the ways tests draw curves."""
 
+import os
+import sys
+
 import bpy
 import pytest
 
@@ -12,3 +15,20 @@ def empty_file():
     addon.blender.register()
     yield
     addon.blender.unregister()
+
+
+_status = pytest.ExitCode.OK
+
+
+def pytest_sessionfinish(exitstatus):
+    """Remember how the tests ended."""
+    global _status
+    _status = exitstatus
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_unconfigure():
+    """End the process here: hypothesis keeps modules, and `bpy` freed as late as that crashes or hangs."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(int(_status))

@@ -6,11 +6,15 @@ up. Where there is none, these tests are skipped and say why.
 
 import json
 import os
+import re
+import signal
 import subprocess
+import time
 from pathlib import Path
 
 import pytest
 
+from scripts.fetch_wheels import ROOT
 from tests.blender.test_extension import zips  # noqa: F401  (a fixture)
 
 HERE = Path(__file__).resolve().parent
@@ -25,10 +29,28 @@ def blender(request, zips, tmp_path_factory):  # noqa: F811
     user = tmp_path_factory.mktemp("user")
     environment = os.environ | {"BLENDER_USER_RESOURCES": str(user), "PYTHONNOUSERSITE": "1"}
 
-    def run(*arguments):
-        return subprocess.run(
-            [executable, *map(str, arguments)], env=environment, capture_output=True, text=True, timeout=300
+    def run(*arguments, until=None):
+        """until: asked every now and then; once it says so, Blender and all that it has started are killed."""
+        process = subprocess.Popen(
+            [executable, *map(str, arguments)],
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
         )
+        try:
+            for _ in range(30_000 if until else 0):
+                if process.poll() is not None:
+                    break
+                if until():
+                    os.killpg(process.pid, signal.SIGKILL)
+                time.sleep(0.01)
+            said, complained = process.communicate(timeout=300)
+        finally:
+            if process.poll() is None:
+                os.killpg(process.pid, signal.SIGKILL)
+        return subprocess.CompletedProcess(process.args, process.returncode, said, complained)
 
     installed = run("--command", "extension", "install-file", "--repo", "user_default", "--enable", zips["linux-x64"])
     assert installed.returncode == 0, installed.stdout + installed.stderr
@@ -101,10 +123,14 @@ def test_the_command_meshes_those_named_and_says_so_with_its_exit_status(blender
 @pytest.mark.parametrize(
     ("arguments", "status", "said"),
     [
-        (("mesh", "--output", "OUT", "--objects", "Nobody"), 2, "no curve or text named 'Nobody'"),
+        (("mesh", "--output", "OUT", "--objects", "Nobody"), 2, "named 'Nobody'"),
         (("mesh",), 2, "--output"),
         (("mesh", "--output", "OUT", "--objects", "Path"), 1, "Path: failed (open)"),
-        (("mesh", "--output", "OUT", "--edge-length", "0"), 1, "failed (edge-length)"),
+        (
+            ("mesh", "--output", "OUT", "--edge-length", "1e-9", "--objects", "Outline"),
+            1,
+            "failed (too-many-triangles)",
+        ),
         (("mesh", "--help"), 0, "--edge-length"),
     ],
 )
@@ -114,3 +140,76 @@ def test_the_commands_exit_status_when_nothing_is_written(blender, scene, tmp_pa
     assert ran.returncode == status, ran.stdout + ran.stderr
     assert said in ran.stdout + ran.stderr
     assert not out.exists()
+
+
+def test_the_scripts_of_the_manual_run(blender, tmp_path):
+    scripts = re.findall(r"^```python\n(.*?)^```", (ROOT / "docs" / "batch.md").read_text(), re.MULTILINE | re.DOTALL)
+    script = tmp_path / "script.py"
+    script.write_text("".join(scripts) + "\nprint('OBJECTS', sorted(bpy.data.objects.keys()))\n")
+    ran = blender("-b", "--python-exit-code", 1, "--python", script)
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    assert "OBJECTS ['BézierCircle', 'BézierCircle Mesh', 'Plate']" in ran.stdout
+
+
+def test_every_zip_is_valid_to_this_blender(blender, zips):  # noqa: F811
+    for path in zips.values():
+        checked = blender("--command", "extension", "validate", path)
+        assert checked.returncode == 0, checked.stdout + checked.stderr
+
+
+def test_a_folder_is_meshed_by_two_processes(blender, scene, tmp_path):
+    inputs, outputs, report = tmp_path / "in", tmp_path / "out", tmp_path / "report.json"
+    inputs.mkdir()
+    for name in ("a.blend", "b.blend"):
+        (inputs / name).write_bytes(scene.read_bytes())
+    (inputs / "logo.svg").write_bytes((ROOT / "examples" / "logo.svg").read_bytes())
+    words = ("mesh", inputs, "--output", outputs, "--format", "glb", "--jobs", 2, "--report", report)
+    ran = blender("-b", "--command", "tessera", *words, "--size-by", "triangle-count", "--triangle-count", 50)
+    assert ran.returncode == 1, ran.stdout + ran.stderr  # the outline that crosses itself, twice
+    assert sorted(path.name for path in outputs.glob("*.*") if path.is_file()) == ["a.glb", "b.glb", "logo.glb"]
+    assert all(path.read_bytes()[:4] == b"glTF" for path in outputs.glob("*.glb"))
+    records = json.loads(report.read_text())["curves"]
+    failed = [(Path(record["input"]).name, record["object"]) for record in records if record["status"] == "failed"]
+    assert failed == [("a.blend", "Bow tie"), ("b.blend", "Bow tie")]
+    assert sum(record["status"] == "meshed" for record in records) > 4
+
+
+def test_two_processes_on_one_file_are_killed_and_taken_up_again(blender, tmp_path):
+    scene, report, alone = tmp_path / "scene.blend", tmp_path / "report.json", tmp_path / "alone.obj"
+    blender("-b", "--factory-startup", "--python", HERE / "make_scene.py", "--", scene, 12)
+    command = ("-b", scene, "--command", "tessera", "mesh", "--edge-length", 0.3)
+    helped = (*command, "--output", tmp_path / "out.obj", "--jobs", 2)
+    journal = tmp_path / ".tessera" / "out.obj"
+    killed = blender(*helped, until=lambda: sum(p.read_text().count("\n") for p in journal.glob("*.jsonl")) >= 3)
+    assert killed.returncode == -signal.SIGKILL and not (tmp_path / "out.obj").exists()
+    done = sum(path.read_text().count("\n") for path in journal.glob("*.jsonl"))
+    ran = blender(*helped, "--resume", "--report", report)
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    records = json.loads(report.read_text())["curves"]
+    assert len(records) == 12 and sum(record["earlier"] for record in records) == done
+    assert blender(*command, "--output", alone).returncode == 0
+    assert (tmp_path / "out.obj").read_text().replace("out.mtl", "alone.mtl") == alone.read_text()
+
+
+def test_a_process_that_ends_is_replaced_and_its_curve_is_said_to_have_failed(blender, tmp_path):
+    scene, report = tmp_path / "scene.blend", tmp_path / "report.json"
+    blender("-b", "--factory-startup", "--python", HERE / "make_scene.py", "--", scene, 12)
+    journal = tmp_path / ".tessera" / "out.stl"
+    words = ("mesh", "--edge-length", 0.1, "--output", tmp_path / "out.stl", "--jobs", 2, "--report", report)
+    ended = []
+
+    def end_one():
+        """Kill the process that has done most, whose number is in its journal's name; once."""
+        journals = [path for path in journal.glob("*.jsonl") if path.stat().st_size]
+        if journals and not ended:
+            ended.append(max(journals, key=lambda path: path.stat().st_size))
+            os.kill(int(ended[0].stem.rpartition("-")[2]), signal.SIGKILL)
+
+    ran = blender("-b", scene, "--command", "tessera", *words, until=end_one)
+    assert ended, ran.stdout + ran.stderr
+    assert "another takes its place" in ran.stderr
+    records = json.loads(report.read_text())["curves"]
+    failed = [record["reason"] for record in records if record["status"] == "failed"]
+    assert failed in (["process"], []), failed  # none, if it was between two curves
+    assert ran.returncode == len(failed) and (tmp_path / "out.stl").exists()
+    assert sum(record["status"] == "meshed" for record in records) == 12 - len(failed)

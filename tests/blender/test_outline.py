@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from addon.blender.outline import outline_edges, polylines
+from addon.blender.chains import outline_edges, polylines
 from addon.blender.plane import fit_plane
 from addon.tessera.errors import ContourError
 

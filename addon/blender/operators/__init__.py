@@ -2,9 +2,18 @@
 
 import bpy
 
+from .mesh_again import TESSERA_OT_mesh_again, TESSERA_OT_unlink
 from .mesh_curve import TESSERA_OT_mesh_curve
+from .remesh_faces import TESSERA_OT_remesh_faces
+from .select_place import TESSERA_OT_select_place
 
-_CLASSES = (TESSERA_OT_mesh_curve,)
+_CLASSES = (
+    TESSERA_OT_mesh_curve,
+    TESSERA_OT_remesh_faces,
+    TESSERA_OT_mesh_again,
+    TESSERA_OT_unlink,
+    TESSERA_OT_select_place,
+)
 
 
 def register() -> None:

@@ -1,93 +1,79 @@
-"""Object > Convert > Mesh by Tessera."""
+"""Object > Convert > Mesh by Tessera, and the same for the curve or text in Edit Mode."""
+
+from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 import bpy
 
-from ..kinds import READABLE
+from ..kinds import is_readable
+from ..layout import draw_settings
+from ..preferences import default_settings
+from ..progress import Steps
+from ..properties import annotations, read_settings, write_setting
+from ..settings import table
+from .stepping import Refusal, Stepping
 
 if TYPE_CHECKING:
-    from ..meshing import Meshed
+    from ..meshing import Batch
+
+_MODES = frozenset({"OBJECT", "EDIT_CURVE", "EDIT_CURVES", "EDIT_TEXT", "EDIT_GREASE_PENCIL", "EDIT_GPENCIL"})
 
 
-class TESSERA_OT_mesh_curve(bpy.types.Operator):
-    """Make an even triangle mesh of each selected planar closed curve or text; the curve stays as it is"""
+class TESSERA_OT_mesh_curve(Stepping, bpy.types.Operator):
+    """Triangulate planar closed curves, texts, strokes and flat meshes evenly: mesh or remesh each selected object"""
 
     bl_idname = "tessera.mesh_curve"
-    bl_label = "Mesh by Tessera"
-    bl_options = {"REGISTER", "UNDO"}
-
-    # Not remembered from one use to the next: a length that suits one object rarely suits another.
-    edge_length: bpy.props.FloatProperty(
-        name="Edge Length",
-        description="Target length of the triangles' edges, in the world's units. "
-        "At first 1/25 of the longer side of the largest outline",
-        default=0.0,
-        min=0.0,
-        soft_max=1000.0,
-        precision=4,
-        subtype="DISTANCE",
-        unit="LENGTH",
-        options={"SKIP_SAVE"},
-    )
-    boundary: bpy.props.EnumProperty(
-        name="Boundary",
-        description="Which vertices the mesh has on the outline",
-        items=(
-            ("RESAMPLE", "Resample", "Vertices at the target edge length along the outline; corners are kept"),
-            ("KEEP", "Keep", "Exactly the vertices of the outline at the curve's resolution, and no other"),
-        ),
-        default="RESAMPLE",
-    )
+    bl_label = "Mesh Curve by Tessera"
+    bl_options = {"REGISTER", "UNDO", "PRESET"}
+    __annotations__ = annotations()
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Object Mode. What is selected is not asked: Adjust Last Operation polls when the new mesh is selected."""
-        if context.mode != "OBJECT":
-            cls.poll_message_set("Only in Object Mode")
+        """The mode. What is selected is not asked: Adjust Last Operation polls when the new mesh is selected."""
+        if context.mode not in _MODES:
+            cls.poll_message_set("Only in Object Mode and in the Edit Mode of curves, texts and strokes")
             return False
         return True
 
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Mesh everything, and only then make objects: a failure leaves the scene as it was."""
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Start with the preferences, where neither a script, a preset nor the last use says anything."""
+        preferred = default_settings()
+        for name in table():
+            if not self.properties.is_property_set(name, ghost=False):
+                write_setting(preferred, name, self)
+        return super().invoke(context, event)
+
+    def steps(self, context: bpy.types.Context) -> Steps[Batch]:
+        """Mesh what is selected, or what is in Edit Mode."""
         from .. import meshing  # here, so that enabling the add-on does not load the mesher
 
-        objects = [obj for obj in context.selected_objects if obj.type in READABLE]
+        objects = [obj for obj in _objects(context) if is_readable(obj)]
         if not objects:
-            self.report({"ERROR"}, "No curve or text is selected. Select what is to be meshed")
-            return {"CANCELLED"}
-        depsgraph = context.evaluated_depsgraph_get()
-        try:
-            outlines = [meshing.read(obj, depsgraph) for obj in objects]
-            if not self.properties.is_property_set("edge_length"):
-                self.edge_length = meshing.default_edge_length(outlines)
-            meshed = [
-                meshing.mesh(obj, outline, self.edge_length, self.boundary.lower())
-                for obj, outline in zip(objects, outlines, strict=True)
-            ]
-        except meshing.Failure as failure:
-            self.report({"ERROR"}, str(failure))
-            return {"CANCELLED"}
-        _show(context, [m.write() for m in meshed], objects)
-        self._summarise(meshed)
-        return {"FINISHED"}
+            raise Refusal("Nothing that can be meshed is selected. Select curves, texts, strokes or flat meshes")
+        settings = read_settings(self)
+        return meshing.mesh_all(objects, context.evaluated_depsgraph_get(), [settings] * len(objects))
 
-    def _summarise(self, meshed: "list[Meshed]") -> None:
-        for m in meshed:
-            for warning in m.report.warnings:
-                self.report({"WARNING"}, f"{m.obj.name}: {warning}")
-        triangles = sum(len(m.triangles) for m in meshed)
-        worst = min(m.report.q_worst for m in meshed)
-        mean = sum(m.report.q_mean * len(m.triangles) for m in meshed) / triangles
-        self.report({"INFO"}, f"{triangles} triangles, quality {mean:.3f} on average, {worst:.3f} at worst")
+    def write(self, context: bpy.types.Context, batch: Batch) -> None:
+        """Make the meshes, and select them in place of their sources."""
+        from .. import results
+
+        sources = [meshed.task.obj for meshed in batch.meshed]
+        active = sources.index(context.object) if context.object in sources else 0
+        if context.mode != "OBJECT":
+            # Undo in Edit Mode knows of the edited object alone.
+            bpy.ops.object.mode_set(mode="OBJECT")
+        made = results.write_results(list(batch.meshed))
+        replaced = read_settings(self).result == "REPLACE"
+        results.select(context, made, [] if replaced else sources, active)
+        if len(batch.meshed) == 1:
+            # So that Adjust Last Operation starts from a length, and not from 0.
+            self.edge_length = batch.meshed[0].edge_length
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """The settings, in Adjust Last Operation."""
+        draw_settings(self.layout, self)
 
 
-def _show(context: bpy.types.Context, made: list[bpy.types.Object], sources: list[bpy.types.Object]) -> None:
-    """Select the new objects in place of their sources, as Blender's own Convert does."""
-    active = context.view_layer.objects.active
-    for source in sources:
-        source.select_set(False)
-    for obj in made:
-        obj.select_set(True)
-    index = sources.index(active) if active in sources else 0
-    context.view_layer.objects.active = made[index]
+def _objects(context: bpy.types.Context) -> list[bpy.types.Object]:
+    return list(context.selected_objects if context.mode == "OBJECT" else context.objects_in_mode)

@@ -1,0 +1,60 @@
+"""Which process does what: processes that share work claim it with files, so that no two do the same. No `bpy` here.
+
+The process that leads keeps the folder of claims, and shows with the file `alive` that it still runs; helpers stop soon
+after it has ended, and at once when a later run has removed the folder.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+# Seconds without a sign of the leading process after which helpers stop.
+PATIENCE = 60.0
+
+
+class RunIsOver(Exception):
+    """The leading process has ended, or a later run has begun."""
+
+
+@dataclass(frozen=True)
+class Claims:
+    """run: the name of this run; folder: where claims are, or None where one process does everything."""
+
+    run: str
+    folder: Path | None = None
+
+    def claim(self, job: int, curve: int | None = None) -> bool:
+        """Whether this process is the first to take a job, or a curve of it. Raises RunIsOver."""
+        if not self._led():
+            raise RunIsOver
+        try:
+            os.close(os.open(self._path(job, curve), os.O_CREAT | os.O_EXCL))
+        except FileExistsError:
+            return False
+        except FileNotFoundError:
+            raise RunIsOver from None
+        return True
+
+    def is_claimed(self, job: int, curve: int | None = None) -> bool:
+        """Whether any process has taken it."""
+        return self.folder is not None and self._path(job, curve).exists()
+
+    def count(self) -> int:
+        """How much has been claimed."""
+        return sum(entry.name != "alive" for entry in os.scandir(self.folder))
+
+    def lead(self) -> None:
+        """Show that the leading process still runs."""
+        (self.folder / "alive").touch()
+
+    def _led(self) -> bool:
+        try:
+            return time.time() - os.stat(self.folder / "alive").st_mtime < PATIENCE
+        except FileNotFoundError:
+            return False
+
+    def _path(self, job: int, curve: int | None) -> Path:
+        return self.folder / (f"{job}" if curve is None else f"{job}-{curve}")

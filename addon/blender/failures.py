@@ -1,0 +1,53 @@
+"""What could not be meshed, in the words that the user sees, and where it is."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from mathutils import Vector
+
+from .errors import OutlineError
+
+if TYPE_CHECKING:
+    import bpy
+
+    from ..tessera.errors import ContourError
+    from .outline import Outline
+
+_STROKES = "Grease pencil"
+_KINDS = {"FONT": "Text", "MESH": "Mesh", "EMPTY": "Instances", "GREASEPENCIL": _STROKES, "GPENCIL": _STROKES}
+# The library knows places in the outline's plane only, and loops by no name that the user would know.
+_SENTENCES = {
+    "self-intersection": "crosses or touches itself near {place}: move points there to keep its edges apart.",
+    "crossing": "crosses or touches another near {place}: move them apart, or join them into one.",
+}
+
+
+class Failure(Exception):
+    """An object's ContourError as one sentence: object, spline, cause, place and remedy.
+
+    reason: the ContourError's; spline: its number from 1, or 0 where it is not known; place: in the world, or None.
+    """
+
+    def __init__(self, obj: bpy.types.Object, error: ContourError, outline: Outline | None = None) -> None:
+        self.obj, self.reason, self.spline, self.place = obj.name, error.reason, 0, None
+        if outline is not None and error.place is not None:
+            self.spline = int(outline.splines[outline.loop_near(error.place)])
+            lifted = outline.plane.lift(np.array([error.place], dtype=np.float64))[0]
+            self.place = tuple(obj.matrix_world @ Vector(lifted))
+        elif isinstance(error, OutlineError) and error.point is not None:
+            self.spline, self.place = error.spline, tuple(obj.matrix_world @ Vector(error.point))
+        super().__init__(_sentence(obj, error, self.spline, self.place))
+
+
+def _sentence(obj: bpy.types.Object, error: ContourError, spline: int, place: tuple | None) -> str:
+    # Errors of reading name the spline themselves.
+    spline = 0 if isinstance(error, OutlineError) else spline
+    name = f"{_KINDS.get(obj.type, 'Curve')} '{obj.name}'"
+    if spline:
+        name += f", spline {spline}"
+    where = f"({', '.join(f'{x:.4g}' for x in place)})" if place else ""
+    if place and error.reason in _SENTENCES:
+        return f"{name} {_SENTENCES[error.reason].format(place=where)}"
+    return f"{name}: {error}" + (f" That is at {where}." if place else "")

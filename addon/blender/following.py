@@ -1,0 +1,139 @@
+"""Linked meshes that follow their source: at each change of it they are meshed again, once Blender is idle.
+
+What is read of the source is compared with what the mesh was made of, so that nothing is done for nothing: a change of
+the selection is none, and after undo only what is out of date is meshed.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+
+import bpy
+from bpy.app.handlers import persistent
+
+from .linked import fingerprint, is_linked, linked_settings, source_is_there
+
+# Meshes that took longer than this many seconds wait until their source has not changed for as long as _REST.
+_QUICK, _REST = 0.2, 0.4
+# A window that stands still for more seconds than this is no help: such meshes follow no longer by themselves.
+_TOO_LONG = 3.0
+
+_wanted: set[str] = set()  # names of meshes that may be out of date
+_slowest = 0.0  # seconds of the last time
+_at_work = False
+
+
+def want(obj: bpy.types.Object) -> None:
+    """Mesh this object again soon, if it is linked and follows its source; without a window, at once."""
+    if not is_linked(obj) or not obj.tessera.automatic or _at_work:
+        return
+    _wanted.add(obj.name)
+    if bpy.app.background:
+        _catch_up()
+        return
+    if bpy.app.timers.is_registered(_catch_up):
+        if _slowest < _QUICK:
+            return
+        bpy.app.timers.unregister(_catch_up)
+    bpy.app.timers.register(_catch_up, first_interval=0.0 if _slowest < _QUICK else _REST)
+
+
+def _catch_up() -> None:
+    """Mesh what may be out of date."""
+    global _at_work, _slowest
+    names, started = sorted(_wanted), time.perf_counter()
+    _wanted.clear()
+    _at_work = True
+    try:
+        for name in names:
+            obj = bpy.data.objects.get(name)
+            if is_linked(obj) and obj.tessera.automatic:
+                since = time.perf_counter()
+                mesh_again(obj)
+                if not bpy.app.background:
+                    stop_if_slow(obj, time.perf_counter() - since)
+    finally:
+        _at_work = False
+        _slowest = time.perf_counter() - started
+
+
+def stop_if_slow(obj: bpy.types.Object, seconds: float) -> None:
+    """Let a mesh that took too long follow no longer, and say so at it."""
+    if seconds > _TOO_LONG:
+        obj.tessera.automatic = False
+        obj.tessera.message = f"Meshing took {seconds:.0f} s, so Follow Changes was switched off: use Mesh Again"
+
+
+def mesh_again(obj: bpy.types.Object) -> bool:
+    """Mesh a linked object if it is out of date; whether it was. What is wrong with its source is noted at it."""
+    from . import meshing, results  # here, so that enabling the add-on does not load the mesher
+
+    if not source_is_there(obj):
+        obj.tessera.message = "Its source is no longer in the scene"
+        return False
+    settings, depsgraph = linked_settings(obj), bpy.context.evaluated_depsgraph_get()
+    try:
+        task = meshing.read_task(obj.tessera.source, depsgraph, settings)
+        if fingerprint(task, settings) == obj.tessera.fingerprint:
+            if obj.tessera.message:
+                obj.tessera.message = ""
+            return False
+        results.rewrite(obj, meshing.finish(meshing.mesh_task(task)))
+    except meshing.Failure as failure:
+        obj.tessera.message = str(failure)
+        return False
+    return True
+
+
+@persistent
+def _after_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    changed = {update.id.original.name for update in depsgraph.updates if _matters(update)}
+    if changed:
+        for obj in _following():
+            source, near = obj.tessera.source, obj.tessera.settings.object_name
+            if {source.name, source.data.name if source.data else "", near.name if near else ""} & changed:
+                want(obj)
+
+
+def _matters(update: bpy.types.DepsgraphUpdate) -> bool:
+    return update.is_updated_geometry or (update.is_updated_transform and isinstance(update.id, bpy.types.Object))
+
+
+@persistent
+def _after_undo(scene: bpy.types.Scene, _) -> None:
+    for obj in _following():
+        want(obj)
+
+
+@persistent
+def _after_load(_path: str, _) -> None:
+    _wanted.clear()
+
+
+def _following() -> Iterator[bpy.types.Object]:
+    return (obj for obj in bpy.data.objects if is_linked(obj) and obj.tessera.automatic)
+
+
+def _handlers() -> tuple:
+    handlers = bpy.app.handlers
+    return (
+        (handlers.depsgraph_update_post, _after_update),
+        (handlers.undo_post, _after_undo),
+        (handlers.redo_post, _after_undo),
+        (handlers.load_post, _after_load),
+    )
+
+
+def register() -> None:
+    """Listen to changes."""
+    for handlers, function in _handlers():
+        handlers.append(function)
+
+
+def unregister() -> None:
+    """Listen no more."""
+    for handlers, function in _handlers():
+        handlers.remove(function)
+    if bpy.app.timers.is_registered(_catch_up):
+        bpy.app.timers.unregister(_catch_up)

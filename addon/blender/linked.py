@@ -1,0 +1,131 @@
+"""What a mesh remembers of its making: how good it is and, if it is kept linked, its source and its settings."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from .properties import annotations, read_settings, write_settings
+
+if TYPE_CHECKING:
+    from .meshing import Meshed, Task
+    from .settings import Settings
+    from .writing import Piece
+
+# Where the bars of the histogram of qualities begin and end.
+BINS = (0.0, 0.5, 0.7, 0.8, 0.9, 1.0)
+
+
+def _changed(group, _context) -> None:
+    from . import following  # here, as that imports this
+
+    following.want(group.id_data)
+
+
+class TESSERA_PG_link_settings(bpy.types.PropertyGroup):
+    """The settings of a linked mesh."""
+
+    __annotations__ = annotations(pointers=True, update=_changed, without=("result",))
+
+
+class TESSERA_PG_mesh(bpy.types.PropertyGroup):
+    """At every object, and filled for those that Tessera has made: numbers of the last meshing, and the link."""
+
+    source: bpy.props.PointerProperty(
+        type=bpy.types.Object, name="Source", description="What this mesh is made of, while it is kept linked"
+    )
+    settings: bpy.props.PointerProperty(type=TESSERA_PG_link_settings)
+    automatic: bpy.props.BoolProperty(
+        name="Follow Changes",
+        description="Mesh again at each change of the source. Switch it off for meshes that take long",
+        update=_changed,
+    )
+    # What it was made of last: while that is the same there is nothing to do.
+    fingerprint: bpy.props.StringProperty(options={"HIDDEN"})
+    message: bpy.props.StringProperty(options={"HIDDEN"})
+    n_triangles: bpy.props.IntProperty(name="Triangles")
+    q_worst: bpy.props.FloatProperty(name="Worst Quality")
+    q_mean: bpy.props.FloatProperty(name="Mean Quality")
+    edge_lengths: bpy.props.FloatVectorProperty(name="Edge Lengths", size=3, unit="LENGTH")
+    histogram: bpy.props.IntVectorProperty(name="Qualities", size=len(BINS) - 1)
+
+
+def link(obj: bpy.types.Object, meshed: Meshed) -> None:
+    """Note at a new mesh object what it was made of; an edge length that was chosen is noted as it came out."""
+    note = obj.tessera
+    note.source = meshed.task.obj
+    write_settings(replace(meshed.task.settings, edge_length=meshed.edge_length), note.settings)
+    mark_as_current(obj, meshed)
+
+
+def mark_as_current(obj: bpy.types.Object, meshed: Meshed) -> None:
+    """Note that a linked mesh is what is made of this now."""
+    obj.tessera.fingerprint = fingerprint(meshed.task, linked_settings(obj))
+
+
+def remember_quality(obj: bpy.types.Object, made: list[Meshed]) -> None:
+    """Note at a mesh object how good it is; made: what it was written of, more than one where they were joined."""
+    note, reports = obj.tessera, [report for meshed in made for report in meshed.reports]
+    counts = np.array([report.n_triangles for report in reports])
+    lengths = np.array([report.edge_lengths for report in reports])
+    note.n_triangles = counts.sum()
+    note.q_worst = min(report.q_worst for report in reports)
+    note.q_mean = np.average([report.q_mean for report in reports], weights=counts)
+    # The mean of the edges is weighted by triangles, of which there are two for three edges.
+    note.edge_lengths = lengths[:, 0].min(), np.average(lengths[:, 1], weights=counts), lengths[:, 2].max()
+    quality = np.concatenate([piece_quality(piece) for meshed in made for piece in meshed.pieces])
+    note.histogram = np.histogram(np.clip(quality, BINS[0], BINS[-1]), BINS)[0].tolist()
+    note.message = ""
+
+
+def piece_quality(piece: Piece) -> np.ndarray:
+    """(m,) the quality of each element."""
+    from ..tessera.quality import element_quality
+
+    return element_quality(piece.vertices, piece.triangles)
+
+
+def fingerprint(task: Task, settings: Settings) -> str:
+    """A word that is the same as long as what is read for a mesh, and its settings, are."""
+    digest = hashlib.sha1(usedforsecurity=False)
+    for outline, targets in zip(task.outlines, task.targets, strict=True):
+        arrays = [*outline.loops, outline.plane.origin, outline.plane.axes, outline.plane.metric, outline.materials]
+        for pair in (targets.weights, targets.near):
+            arrays += pair or ()
+        for array in arrays:
+            digest.update(str(array.shape).encode())
+            digest.update(np.ascontiguousarray(array).tobytes())
+    return digest.hexdigest() + repr(settings)
+
+
+def linked_settings(obj: bpy.types.Object) -> Settings:
+    """The settings of a linked mesh."""
+    return read_settings(obj.tessera.settings)
+
+
+def is_linked(obj: bpy.types.Object | None) -> bool:
+    """Whether an object is a mesh that is kept linked to a source."""
+    return obj is not None and obj.type == "MESH" and obj.tessera.source is not None
+
+
+def source_is_there(obj: bpy.types.Object) -> bool:
+    """Whether a linked mesh's source is still in a scene: what refers to a deleted object keeps it in the file."""
+    return bool(obj.tessera.source.users_scene)
+
+
+def register() -> None:
+    """Give every object its note."""
+    bpy.utils.register_class(TESSERA_PG_link_settings)
+    bpy.utils.register_class(TESSERA_PG_mesh)
+    bpy.types.Object.tessera = bpy.props.PointerProperty(type=TESSERA_PG_mesh)
+
+
+def unregister() -> None:
+    """Take it back."""
+    del bpy.types.Object.tessera
+    bpy.utils.unregister_class(TESSERA_PG_mesh)
+    bpy.utils.unregister_class(TESSERA_PG_link_settings)

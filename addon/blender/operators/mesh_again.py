@@ -1,0 +1,83 @@
+"""Mesh Again, and Unlink: for meshes that are kept linked to their source."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import bpy
+
+from ..linked import is_linked, linked_settings, source_is_there
+from ..progress import Steps
+from .stepping import Refusal, Stepping
+
+if TYPE_CHECKING:
+    from ..meshing import Batch
+
+
+class TESSERA_OT_mesh_again(Stepping, bpy.types.Operator):
+    """Mesh the selected linked meshes again, as their sources and settings are now; materials and modifiers stay"""
+
+    bl_idname = "tessera.mesh_again"
+    bl_label = "Mesh Again"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Object Mode, with a linked mesh active."""
+        return _poll(cls, context)
+
+    def steps(self, context: bpy.types.Context) -> Steps[Batch]:
+        """Mesh the sources by the settings at the meshes."""
+        from .. import meshing  # here, so that enabling the add-on does not load the mesher
+
+        self._targets = _targets(context)
+        for obj in self._targets:
+            if not source_is_there(obj):
+                raise Refusal(f"Mesh '{obj.name}': its source is no longer in the scene. Undo its deletion, or unlink")
+        sources = [obj.tessera.source for obj in self._targets]
+        settings = [linked_settings(obj) for obj in self._targets]
+        return meshing.mesh_all(sources, context.evaluated_depsgraph_get(), settings)
+
+    def write(self, context: bpy.types.Context, batch: Batch) -> None:
+        """New geometry for each mesh whose source could be meshed."""
+        from .. import results
+
+        waiting = list(self._targets)
+        for meshed in batch.meshed:
+            target = next(obj for obj in waiting if obj.tessera.source == meshed.task.obj)
+            waiting.remove(target)
+            results.rewrite(target, meshed)
+
+
+class TESSERA_OT_unlink(bpy.types.Operator):
+    """Forget the source: the selected linked meshes become plain meshes, and stay as they are"""
+
+    bl_idname = "tessera.unlink"
+    bl_label = "Unlink"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Object Mode, with a linked mesh active."""
+        return _poll(cls, context)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Forget it."""
+        for obj in _targets(context):
+            obj.tessera.source = None
+            obj.tessera.automatic = False
+            obj.tessera.message = obj.tessera.fingerprint = ""
+        return {"FINISHED"}
+
+
+def _poll(cls, context: bpy.types.Context) -> bool:
+    if context.mode != "OBJECT" or not is_linked(context.object):
+        cls.poll_message_set("Only in Object Mode, for a mesh that was made with Keep Linked")
+        return False
+    return True
+
+
+def _targets(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """The linked meshes that are selected, and the active one."""
+    chosen = [obj for obj in context.selected_objects if is_linked(obj)]
+    return chosen if context.object in chosen else [context.object, *chosen]

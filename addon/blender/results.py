@@ -1,0 +1,69 @@
+"""From what was meshed to objects in the scene, as the settings say."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import bpy
+
+from .linked import link, mark_as_current, remember_quality
+from .preferences import collection_name
+from .writing import write_again, write_in_place, write_joined, write_mesh
+
+if TYPE_CHECKING:
+    from .meshing import Meshed
+
+
+def write_results(made: list[Meshed]) -> list[bpy.types.Object]:
+    """Make the objects, all by the settings of the first; none of them is selected. `made` has one at least."""
+    settings = made[0].task.settings
+    if settings.result == "JOIN":
+        objects = [write_joined([(meshed.task.obj, list(meshed.pieces)) for meshed in made])]
+        remember_quality(objects[0], made)
+    else:
+        write = write_in_place if settings.result == "REPLACE" else write_mesh
+        objects = []
+        for meshed in made:
+            obj = write(meshed.task.obj, list(meshed.pieces))
+            remember_quality(obj, [meshed])
+            if settings.keep_linked and settings.result == "NEW":
+                link(obj, meshed)
+            objects.append(obj)
+    name = collection_name()
+    if name and settings.result != "REPLACE":
+        _move(objects, name)
+    return objects
+
+
+def rewrite(target: bpy.types.Object, meshed: Meshed) -> None:
+    """Give a linked mesh its new geometry."""
+    write_again(target, list(meshed.pieces))
+    remember_quality(target, [meshed])
+    mark_as_current(target, meshed)
+
+
+def select(
+    context: bpy.types.Context, made: list[bpy.types.Object], sources: list[bpy.types.Object], active: int
+) -> None:
+    """Select the new objects in place of their sources, as Blender's own Convert does.
+
+    active: which of them is the active one, or of their sources, where they were joined.
+    """
+    for source in sources:
+        source.select_set(False)
+    for obj in made:
+        obj.select_set(True)
+    context.view_layer.objects.active = made[min(active, len(made) - 1)]
+
+
+def _move(objects: list[bpy.types.Object], name: str) -> None:
+    """Into a collection of the scene, which is made if it is not there."""
+    collection = bpy.data.collections.get(name)
+    if collection is None:
+        collection = bpy.data.collections.new(name)
+    if collection not in bpy.context.scene.collection.children_recursive:
+        bpy.context.scene.collection.children.link(collection)
+    for obj in objects:
+        for old in obj.users_collection:
+            old.objects.unlink(obj)
+        collection.objects.link(obj)

@@ -1,0 +1,141 @@
+"""From a graph to simple polygons: bridges through its faces, as from holes to the contour (`bridges.py`).
+
+What bounds a face is made of blocks: the contours of what is not part of the face, which may touch in a vertex; lines'
+edges, with the face on both sides; and points. One of them, the root, is around the face. Where a block's leftmost
+vertex is in no block that goes farther left, it gets a bridge to the left, and its rightmost one, to the right. Then
+from every block there is a way to the root, from block to block, each by its leftmost vertex, around contours on either
+side, and along bridges. All that it cannot avoid is left of the block, or its leftmost vertex; and of the way to the
+right, right of it. So no vertex blocks both, and the faces are simple polygons, by the argument of `bridges.py`.
+"""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from .bridges import Net, add_bridges, wanted_between
+from .division import Polygons
+from .faces import find_faces
+from .graph import Faces, Graph, graph_faces, half_edges
+from .rows import with_rows
+from .spacing import Target
+
+# With more points in a face, looking for each one's bridges would take long.
+_MANY = 50
+
+
+def graph_polygons(
+    graph: Graph, edge_length: np.ndarray, target: Target | None = None
+) -> tuple[np.ndarray, Polygons, np.ndarray]:
+    """Points (p, 2), the graph's first, the polygons of them that tile its regions, and the edges (f, 2) that stay.
+
+    edge_length: (r,) the longest target of each region; target: as of `division.divide`. Edges that stay lie between
+    polygons and must be edges of the mesh; a point without edges is one from itself to itself. The polygons' owner is
+    their region. A loop over faces and over what lies in them.
+    """
+    faces = graph_faces(graph.points, graph.edges)
+    region = np.full(faces.count, -1)
+    region[faces.of_half_edge] = graph.sides.T.ravel()
+    tails, heads, back = half_edges(graph.edges)
+    inside = region[faces.of_half_edge] >= 0
+    points, spacing = [graph.points], _spacing(graph, edge_length, target)
+    bridges, count = [np.zeros((0, 3), dtype=np.int64)], len(graph.points)
+    for face, left, right in _tips(graph, faces, inside):
+        own = _of_face(graph, faces, face)
+        owner = region[face]
+        longest = float(edge_length[owner])
+        wanted = partial(wanted_between, target, owner, longest)
+        vertices, ends = np.unique(own, return_inverse=True)
+        start, end = ends.reshape(own.shape).T
+        net = Net(graph.points[vertices], spacing[vertices], start, end)
+        alone = start[start == end]
+        left, right = (np.searchsorted(vertices, tips) for tips in (left, right))
+        if len(alone) > _MANY:
+            net = with_rows(net, alone, owner, longest, target)
+            left, right = np.setdiff1d(left, net.ends()[1]), np.setdiff1d(right, net.ends()[0])
+        net = add_bridges(net, left, right, longest, wanted)
+        number = np.concatenate([vertices, count + np.arange(len(net.points) - len(vertices))])
+        points.append(net.points[len(vertices) :])
+        count += len(points[-1])
+        ends = number[net.start[len(start) :]], number[net.end[len(start) :]]
+        bridges.append(np.column_stack([*ends, np.full(len(ends[0]), owner)]))
+    points = np.concatenate(points)
+    tail, head, owner = np.concatenate(bridges).T
+    number = np.cumsum(inside) - 1
+    twin = np.where(inside[back], number[back], -1)[inside]
+    n, s = len(twin), len(tail)
+    origin = np.concatenate([tails[inside], tail, head])
+    goal = np.concatenate([heads[inside], head, tail])
+    walk, size = find_faces(points, origin, goal, np.concatenate([twin, n + s + np.arange(s), n + np.arange(s)]))
+    of = np.concatenate([region[faces.of_half_edge[inside]], owner, owner])
+    alone = np.flatnonzero(graph.home >= 0)
+    stay = np.concatenate([graph.edges[graph.inner], np.column_stack([alone, alone])])
+    return points, Polygons(origin[walk], size, of[walk[np.cumsum(size) - size]]), stay
+
+
+def _spacing(graph: Graph, edge_length: np.ndarray, target: Target | None) -> np.ndarray:
+    """(p,) mean length of the edges at each point, or the target at one without edges."""
+    length = np.linalg.norm(graph.points[graph.edges[:, 1]] - graph.points[graph.edges[:, 0]], axis=1)
+    n = len(graph.points)
+    count = np.bincount(graph.edges.ravel(), minlength=n)
+    spacing = np.bincount(graph.edges.ravel(), np.repeat(length, 2), minlength=n) / np.maximum(count, 1)
+    alone = np.flatnonzero(graph.home >= 0)
+    home = graph.home[alone]
+    spacing[alone] = edge_length[home] if target is None else target(graph.points[alone], home)
+    return spacing
+
+
+def _of_face(graph: Graph, faces: Faces, face: int) -> np.ndarray:
+    """The edges (k, 2) that bound a face, and those from each point in it to itself."""
+    edges = np.unique(np.flatnonzero(faces.of_half_edge == face) % len(graph.edges))
+    alone = np.flatnonzero(faces.of_point == face)
+    return np.concatenate([graph.edges[edges], np.column_stack([alone, alone])])
+
+
+def _tips(graph: Graph, faces: Faces, inside: np.ndarray) -> list[tuple[int, np.ndarray, np.ndarray]]:
+    """Faces that need bridges, with the vertices to start from to the left and to the right."""
+    face, vertex, block, n_blocks = _blocks(graph, faces, inside)
+    rank = np.empty(len(graph.points), dtype=np.int64)
+    rank[np.lexsort(graph.points.T[::-1])] = np.arange(len(rank))
+    rank = rank[vertex]
+    lowest, highest, first, last = np.full((4, n_blocks), 0)
+    lowest[:], highest[:] = len(graph.points), -1
+    np.minimum.at(lowest, block, rank)
+    np.maximum.at(highest, block, rank)
+    # The root has both the leftmost and the rightmost vertex of its face.
+    first, last = np.full(faces.count, len(graph.points)), np.full(faces.count, -1)
+    np.minimum.at(first, face, rank)
+    np.maximum.at(last, face, rank)
+    root = (lowest[block] == first[face]) & (highest[block] == last[face])
+    copy = np.unique(face * len(graph.points) + vertex, return_inverse=True)[1]
+    farthest = np.full((2, copy.max(initial=-1) + 1), len(graph.points))
+    np.minimum.at(farthest[0], copy, np.where(root, -1, lowest[block]))
+    np.minimum.at(farthest[1], copy, np.where(root, -1, len(graph.points) - 1 - highest[block]))
+    left = farthest[0, copy] == rank
+    right = farthest[1, copy] == len(graph.points) - 1 - rank
+    return [
+        (int(number), np.unique(vertex[left & (face == number)]), np.unique(vertex[right & (face == number)]))
+        for number in np.unique(face[left | right])
+    ]
+
+
+def _blocks(graph: Graph, faces: Faces, inside: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:
+    """What bounds faces: the face (k,), the vertex (k,) and the block (k,) of each corner, and how many blocks."""
+    tails, heads, back = half_edges(graph.edges)
+    line = inside & (faces.of_half_edge == faces.of_half_edge[back])
+    around = np.flatnonzero(inside & ~line)
+    line = np.flatnonzero(line[: len(graph.edges)])
+    # Each face with vertices of its own, and the half-edges back, with on their left what is not part of it.
+    face = faces.of_half_edge[around]
+    key, ends = np.unique(
+        np.concatenate([face, face]) * len(graph.points) + np.concatenate([heads[around], tails[around]]),
+        return_inverse=True,
+    )
+    start, end = np.split(ends, 2)
+    walk, size = find_faces(graph.points[key % len(graph.points)], start, end, np.full(len(around), -1))
+    n, m, alone = len(size), len(line), np.flatnonzero(graph.home >= 0)
+    block = np.concatenate([np.repeat(np.arange(n), size), np.tile(n + np.arange(m), 2), n + m + np.arange(len(alone))])
+    vertex = np.concatenate([key[start[walk]] % len(graph.points), graph.edges[line].T.ravel(), alone])
+    of = np.concatenate([face[walk], np.tile(faces.of_half_edge[line], 2), faces.of_point[alone]])
+    return of, vertex, block, n + m + len(alone)

@@ -1,0 +1,158 @@
+"""Regions to meshes (paper, Algorithms 5 and 6): a coarse mesh, then finer ones level by level, each improved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .assembly import mean_edge_lengths, mesh_cells, wanted_edge_lengths
+from .coarsening import MOST_LEVELS, Coarsening, coarsen
+from .division import divide
+from .gradation import Target
+from .outlines import Outlines
+from .refinement import Sizing, refine
+from .remeshing import improve
+from .sizing import grade_from_edges
+from .steps import Steps, within
+from .stopwatch import Stopwatch
+
+
+@dataclass(frozen=True)
+class RegionMeshes:
+    """vertices: (n, 2); triangles: (m, 3); region: (m,) of each triangle; fallbacks: (r,) by region.
+
+    fixed: (f, 2) edges that stay, a point by itself too, or None where there are none.
+    """
+
+    vertices: np.ndarray
+    triangles: np.ndarray
+    region: np.ndarray
+    fallbacks: np.ndarray
+    fixed: np.ndarray | None
+
+
+def mesh_by_levels(
+    outlines: Outlines,
+    target: Target,
+    corner_angle: float,
+    passes: int,
+    watch: Stopwatch,
+    most: np.ndarray | None = None,
+) -> Steps[RegionMeshes]:
+    """Mesh what outlines bound, with vertices as wanted.
+
+    corner_angle: in radians; passes: of relaxation; most: (d,) levels that each domain may have, at first as many as it
+    can. Where a level's boundary does not fit the coarser mesh, the domain starts again with a level less. Domains with
+    a graph have no levels.
+    """
+    if most is None:
+        most = np.full(len(target.most), MOST_LEVELS)
+    with watch("coarsening"):
+        coarsening = coarsen(outlines.loops, outlines.is_hole, outlines.domain, target, corner_angle, most)
+    parts, done, domains = [], 0.0, outlines.domains
+    # Domains of as many levels together, so that each goes the same way as it would alone.
+    for number in np.unique(coarsening.levels[domains]):
+        some, rows, regions = outlines.of_domains(np.flatnonzero(coarsening.levels == number))
+        end = done + 0.9 * len(regions) / len(domains)
+        steps = _mesh_levels(some, coarsening.of_loops(rows), passes, watch)
+        meshes, failed = yield from within(steps, done, end)
+        parts.append((meshes, regions))
+        done = end
+        if len(failed):
+            again, _, regions = outlines.of_domains(failed)
+            most = np.where(np.isin(np.arange(len(most)), failed), coarsening.levels - 1, most)
+            steps = mesh_by_levels(again, target, corner_angle, passes, watch, most)
+            parts.append(((yield from within(steps, done, done)), regions))
+    return _join(parts, len(domains))
+
+
+def _join(parts: list[tuple[RegionMeshes, np.ndarray]], n_regions: int) -> RegionMeshes:
+    """The meshes of several parts, each with the numbers of its regions among all."""
+    fallbacks, first = np.zeros(n_regions, dtype=np.int64), 0
+    triangles, regions, fixed = [], [], []
+    for meshes, rows in parts:
+        triangles.append(meshes.triangles + first)
+        regions.append(rows[meshes.region])
+        fallbacks[rows] += meshes.fallbacks
+        if meshes.fixed is not None:
+            fixed.append(meshes.fixed + first)
+        first += len(meshes.vertices)
+    vertices = np.concatenate([meshes.vertices for meshes, _ in parts])
+    together = np.concatenate(fixed) if fixed else None
+    return RegionMeshes(vertices, np.concatenate(triangles), np.concatenate(regions), fallbacks, together)
+
+
+def _mesh_levels(
+    outlines: Outlines, coarsening: Coarsening, passes: int, watch: Stopwatch
+) -> Steps[tuple[RegionMeshes, np.ndarray]]:
+    """The meshes of domains that have as many levels each, and the domains that failed on the way and have none."""
+    domain = outlines.domains
+    top = int(coarsening.levels[domain[0]])
+    # A level has about four times as many elements as the one before.
+    ends = 0.25 ** np.arange(top, -1, -1.0)
+    meshes = yield from within(_mesh_coarse(outlines, coarsening, top, watch), 0.0, ends[0] / 2)
+    vertices, triangles, region, fallbacks = meshes.vertices, meshes.triangles, meshes.region, meshes.fallbacks
+    number, failed = np.flatnonzero(coarsening.level >= top), []
+    for level in range(top, -1, -1):
+        middle, end = 0.5 * ends[top - level], ends[top - level]
+        number = np.concatenate([number, np.full(len(vertices) - len(number), -1)])
+        arcs = coarsening.arcs(level, number) if level < top else None
+        sizing = _sizing(outlines, coarsening, level)
+        refinement = refine(vertices, triangles, region, sizing, watch, arcs, meshes.fixed)
+        refined = yield from within(refinement, end / 4, middle)
+        np.add.at(fallbacks, region, refined.fallbacks)
+        number = refined.number if arcs else number
+        failed.append(np.unique(domain[refined.failed]))
+        fallbacks[np.isin(domain, failed[-1])] = 0
+        stay = ~np.isin(domain[region[refined.parent]], failed[-1])
+        vertices, triangles, region = refined.vertices, refined.triangles[stay], region[refined.parent][stay]
+        if len(triangles):
+            improvement = improve(vertices, triangles, region, passes, watch, meshes.fixed)
+            vertices, triangles, region, more = yield from within(improvement, middle, end)
+            fallbacks[: len(more)] += more
+    return RegionMeshes(vertices, triangles, region, fallbacks, meshes.fixed), np.concatenate(failed)
+
+
+@dataclass(frozen=True)
+class _Wanted:
+    """The edge length wanted at a level, at points (n, 2) of regions (n,)."""
+
+    coarsening: Coarsening
+    level: int
+    domain: np.ndarray
+
+    def __call__(self, points: np.ndarray, region: np.ndarray) -> np.ndarray:
+        return self.coarsening.wanted(self.level, points, self.domain[region])
+
+
+def _at_level(outlines: Outlines, coarsening: Coarsening, level: int) -> Outlines:
+    """The outlines with the boundary of a level."""
+    return replace(outlines, loops=coarsening.loops(level))
+
+
+def _sizing(outlines: Outlines, coarsening: Coarsening, level: int) -> Sizing:
+    """The edge length at points (n, 2) of regions (n,), the same for both sides of an edge between two regions."""
+    wanted = _Wanted(coarsening, level, outlines.domains)
+    sizing = grade_from_edges(*_at_level(outlines, coarsening, level).edges(), wanted)
+    if not outlines.graphs:
+        return sizing
+    together = outlines.together()
+    return lambda points, region: sizing(points, together[region])
+
+
+def _mesh_coarse(outlines: Outlines, coarsening: Coarsening, top: int, watch: Stopwatch) -> Steps[RegionMeshes]:
+    """The mesh of the coarsest level, whose boundary's vertices come first."""
+    target, domain = coarsening.target, outlines.domains
+    with watch("division"):
+        wanted = _Wanted(coarsening, top, domain)
+        varying = None if target.constant and top == 0 else wanted
+        points, polygons, fixed = _at_level(outlines, coarsening, top).polygons(target.most[domain] * 2.0**top, varying)
+        division = divide(points, polygons, target.most[domain] * 2.0**top, varying)
+        if varying is None:
+            lengths = mean_edge_lengths(division.points, division.cells)
+        else:
+            lengths = wanted_edge_lengths(division.points, division.cells, division.owner, wanted)
+    vertices, triangles, cell, fallbacks = yield from mesh_cells(division.points, division.cells, lengths, watch)
+    fallbacks = np.bincount(division.owner, fallbacks, minlength=len(domain)).astype(np.int64)
+    return RegionMeshes(vertices, triangles, division.owner[cell].astype(np.int64), fallbacks, fixed)

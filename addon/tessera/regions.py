@@ -1,0 +1,130 @@
+"""Which region each face of a graph is part of, by the contours around it; what contours must not do to each other."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .contour import meeting_error
+from .errors import ContourError
+from .graph import Faces
+from .noding import Noded
+
+
+def face_regions(noded: Noded, faces: Faces, n_loops: int, owner: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+    """The region of each face (f,), -1 outside; and the points (k,) where contours of one owner touch.
+
+    The first curves of `noded` are closed contours; owner: (l,) which of several domains each of those bounds, or None
+    for all the same. Inside a domain is what an odd number of its contours have around them. A region is a domain, or,
+    without owners, the inside of an outer contour, by number. Raises ContourError "self-intersection", "crossing"
+    (contours of one domain cross, or run along each other with the outside beside them) or "overlap" (of two domains).
+    """
+    by_contour = owner is None
+    owner = np.zeros(n_loops, dtype=np.int64) if by_contour else owner
+    traced = noded.curve < n_loops
+    edge, loop, sign = noded.edge[traced], noded.curve[traced], noded.sign[traced]
+    wound = np.abs(signed := _windings(len(noded.edges), edge, loop, sign, faces, len(owner)))
+    touching, pairs = _touching(noded, edge, loop, owner)
+    _check_turns(noded, edge, loop, signed)
+    _check_crossings(noded, edge, loop, wound, pairs)
+    inside = np.zeros((faces.count, int(owner.max()) + 1), dtype=np.int64)
+    np.add.at(inside.T, owner, wound.T)
+    covered = inside % 2 == 1
+    _check_overlaps(noded, faces, covered)
+    _check_double_edges(noded, faces, edge, loop, owner, covered)
+    if not by_contour:
+        return np.where(covered.any(axis=1), covered.argmax(axis=1), -1), touching
+    # The innermost contour around a face is the one around which there are most others.
+    depth = inside[:, 0]
+    level = np.where(wound > 0, depth[:, None], np.iinfo(np.int64).max).min(axis=0)
+    innermost = np.where(wound > 0, level, -1).argmax(axis=1)
+    return np.where(depth % 2 == 1, innermost, -1), touching
+
+
+def _windings(n_edges, edge, loop, sign, faces: Faces, n_loops: int) -> np.ndarray:
+    """(f, l) how often each loop runs around each face, counter-clockwise; from face to face across edges."""
+    wound = np.zeros((faces.count, n_loops), dtype=np.int8)
+    known = np.zeros(faces.count, dtype=bool)
+    known[-1] = True
+    order = np.argsort(edge, kind="stable")
+    edge, loop, sign = edge[order], loop[order], sign[order]
+    first, last = (np.searchsorted(edge, np.arange(n_edges), side=side) for side in ("left", "right"))
+    left, right = np.split(faces.of_half_edge, 2)
+    while not known.all():
+        across = np.flatnonzero(known[left] != known[right])
+        source, goal = np.where(known[left], [left, right], [right, left])[:, across]
+        goal, once = np.unique(goal, return_index=True)
+        across, source = across[once], source[once]
+        wound[goal] = wound[source]
+        count = last[across] - first[across]
+        row = np.repeat(np.arange(len(across)), count)
+        item = first[across][row] + np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+        to_left = np.where(left[across] == goal, 1, -1)
+        np.add.at(wound, (goal[row], loop[item]), (to_left[row] * sign[item]).astype(np.int8))
+        known[goal] = True
+    return wound
+
+
+def _touching(noded: Noded, edge, loop, owner) -> tuple[np.ndarray, np.ndarray]:
+    """Points (k,) that contours of one owner pass more than once, and the pairs of contours (c, 2) that do."""
+    at = np.column_stack([noded.edges[edge].ravel(), np.repeat(loop, 2)])
+    visit, count = np.unique(at, axis=0, return_counts=True)
+    point, by = visit.T
+    twice = [point[count > 2]]
+    pairs = []
+    # Of more than two contours at a point, each meets the next ones.
+    for step in range(1, int(np.bincount(point).max())):
+        (here,) = np.nonzero(point[step:] == point[:-step])
+        if not len(here):
+            break
+        pairs.append(np.column_stack([by[here], by[here + step]]))
+        twice.append(point[here][owner[by[here]] == owner[by[here + step]]])
+    pairs = np.unique(np.concatenate([np.zeros((0, 2), dtype=np.int64), *pairs]), axis=0)
+    return np.unique(np.concatenate(twice)), pairs[owner[pairs[:, 0]] == owner[pairs[:, 1]]]
+
+
+def _check_turns(noded: Noded, edge, loop, signed: np.ndarray) -> None:
+    """A contour that touches itself runs around faces once, always the same way, and along no edge twice."""
+    wrong = np.flatnonzero(signed.max(axis=0) - signed.min(axis=0) > 1)
+    if len(wrong):
+        ends = noded.edges[edge[loop == wrong[0]]].ravel()
+        raise _meeting(True, noded.points[np.flatnonzero(np.bincount(ends) > 2)[0]])
+    key, count = np.unique(np.column_stack([edge, loop]), axis=0, return_counts=True)
+    if (count > 1).any():
+        raise _meeting(True, noded.points[noded.edges[key[count > 1][0, 0]]].mean(axis=0))
+
+
+def _check_crossings(noded: Noded, edge, loop, wound: np.ndarray, pairs: np.ndarray) -> None:
+    """Contours that touch lie inside each other or beside each other."""
+    for one, other in pairs:
+        a, b = wound[:, one] > 0, wound[:, other] > 0
+        if (a & b).any() and (a & ~b).any() and (b & ~a).any():
+            common = np.intersect1d(noded.edges[edge[loop == one]], noded.edges[edge[loop == other]])
+            raise _meeting(False, noded.points[common[0]])
+
+
+def _check_overlaps(noded: Noded, faces: Faces, covered: np.ndarray) -> None:
+    several = np.flatnonzero(covered.sum(axis=1) > 1)
+    if len(several):
+        one, other = np.flatnonzero(covered[several[0]])[:2]
+        half_edge = np.flatnonzero(faces.of_half_edge == several[0])[0]
+        x, y = noded.points[noded.edges[half_edge % len(noded.edges)]].mean(axis=0)
+        message = (
+            f"Regions {one} and {other} (counting from 0) overlap near ({x:.9g}, {y:.9g}). Move their contours apart, "
+            "or cut one of them out of the other, as a hole."
+        )
+        raise ContourError("overlap", message, (float(x), float(y)))
+
+
+def _check_double_edges(noded: Noded, faces: Faces, edge, loop, owner, covered: np.ndarray) -> None:
+    """Where contours of one domain run along each other, both have the inside of the domain beside them."""
+    order = np.lexsort((owner[loop], edge))
+    same = (np.diff(edge[order]) == 0) & (np.diff(owner[loop][order]) == 0)
+    double, domain = edge[order][1:][same], owner[loop][order][1:][same]
+    left, right = np.split(faces.of_half_edge, 2)
+    open_ = ~(covered[left[double], domain] & covered[right[double], domain])
+    if open_.any():
+        raise _meeting(False, noded.points[noded.edges[double[open_][0]]].mean(axis=0))
+
+
+def _meeting(same_loop: bool, place: np.ndarray) -> ContourError:
+    return meeting_error(same_loop, (float(place[0]), float(place[1])))

@@ -1,0 +1,169 @@
+"""A run that was killed, or in which some curves failed, is taken up again: what is done is not done again."""
+
+import json
+import os
+import subprocess
+import sys
+import time
+
+import bpy
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from addon.blender import command
+from addon.blender.command import journal
+from addon.blender.command.claims import PATIENCE, Claims, RunIsOver
+from scripts.fetch_wheels import ROOT
+from tests.blender.drawing import SQUARE, poly_curve, star, triangles, vertices
+
+BOW_TIE = [(0, 0), (1, 1), (1, 0), (0, 1)]
+
+
+def run(folder, *words):
+    """The exit status, and the report's records by their objects."""
+    report = folder / "report.json"
+    output = "" if "--output" in words else ("--output", folder / "out.blend")
+    words = ["mesh", "--edge-length", 0.3, "--report", report, *output, *words]
+    status = command.run([str(word) for word in words])
+    return status, {record["object"]: record for record in json.loads(report.read_text())["curves"]}
+
+
+def bow_tie_and_others(count=3):
+    for i in range(count):
+        poly_curve(star(5 + i), name=f"A{i}")
+    return poly_curve(BOW_TIE, name="Z")
+
+
+def result(name):
+    return vertices(bpy.data.objects[name]).tobytes(), triangles(bpy.data.objects[name]).tobytes()
+
+
+def test_after_a_curve_was_mended_only_that_is_meshed_again_and_all_are_in_the_file(tmp_path):
+    broken = bow_tie_and_others()
+    status, records = run(tmp_path)
+    assert status == 1 and records["Z"]["status"] == "failed"
+    before = {name: result(f"{name} Mesh") for name in ("A0", "A1", "A2")}
+    for obj in [obj for obj in bpy.data.objects if obj.type == "MESH"]:
+        bpy.data.objects.remove(obj)
+    for point, (x, y) in zip(broken.data.splines[0].points, SQUARE, strict=True):
+        point.co = x, y, 0, 1
+    status, records = run(tmp_path, "--resume")
+    assert status == 0 and len(records) == 4
+    assert {name: record["earlier"] for name, record in records.items()} == {"A0": 1, "A1": 1, "A2": 1, "Z": 0}
+    assert {name: result(f"{name} Mesh") for name in before} == before
+    assert np.ptp(vertices(bpy.data.objects["Z Mesh"]), axis=0).tolist() == [1, 1, 0]
+
+
+def test_other_settings_and_other_shapes_are_meshed_anew(tmp_path):
+    bow_tie_and_others()
+    run(tmp_path)
+    bpy.data.objects["A0"].data.splines[0].points[0].co.x += 0.1
+    bpy.data.objects["A1"].scale.x = 2
+    _, records = run(tmp_path, "--resume")
+    assert [records[name]["earlier"] for name in ("A0", "A1", "A2")] == [False, False, True]
+    _, records = run(tmp_path, "--resume", "--flips")
+    assert not any(record["earlier"] for record in records.values())
+
+
+def test_without_resume_everything_is_meshed_and_after_success_no_journal_is_left(tmp_path):
+    broken = bow_tie_and_others()
+    run(tmp_path)
+    assert (tmp_path / ".tessera").is_dir()
+    bpy.data.objects.remove(broken)
+    status, records = run(tmp_path)
+    assert status == 0 and not any(record["earlier"] for record in records.values())
+    assert not (tmp_path / ".tessera").exists()
+
+
+def test_files_that_are_done_are_not_opened_again(tmp_path):
+    drawings, out = tmp_path / "in", tmp_path / "out"
+    drawings.mkdir()
+    for name in "ab":
+        shape = '<rect width="90" height="45"/>'
+        (drawings / f"{name}.svg").write_text(f'<svg xmlns="http://www.w3.org/2000/svg">{shape}</svg>')
+    words = (
+        drawings,
+        "--output",
+        out,
+        "--format",
+        "stl",
+        "--resume",
+        "--triangle-count",
+        20,
+        "--size-by=triangle-count",
+    )
+    assert run(tmp_path, *words)[0] == 0
+    written = {path.name: path.stat().st_mtime_ns for path in out.glob("*.stl")}
+    (drawings / "b.svg").touch()
+    (drawings / "c.svg").write_bytes((drawings / "a.svg").read_bytes())
+    assert run(tmp_path, *words)[0] == 0
+    earlier = [record["earlier"] for record in json.loads((tmp_path / "report.json").read_text())["curves"]]
+    assert earlier == [True, False, False]
+    again = {path.name: path.stat().st_mtime_ns for path in out.glob("*.stl")}
+    assert sorted(again) == ["a.stl", "b.stl", "c.stl"] and again["a.stl"] == written["a.stl"]
+    assert again["b.stl"] > written["b.stl"]
+    (out / "a.stl").unlink()
+    assert run(tmp_path, *words)[0] == 0 and (out / "a.stl").exists()
+
+
+def test_a_run_that_is_killed_loses_the_curve_in_hand_alone(tmp_path):
+    for i in range(12):
+        poly_curve(star(6 + i), name=f"A{i:02}")
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
+    script = ROOT / "tests" / "blender" / "run_command.py"
+    words = [sys.executable, script, tmp_path / "scene.blend", "mesh", "--output", tmp_path / "out.blend"]
+    words += ["--edge-length", "0.2"]
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    with open(tmp_path / "said", "w") as said:
+        process = subprocess.Popen(words, env=environment, stdout=said, stderr=subprocess.STDOUT)
+    folder, until = journal.folder_of(tmp_path / "out.blend"), time.monotonic() + 60
+    while sum(path.read_text().count("\n") for path in folder.glob("*.jsonl")) < 3:
+        assert process.poll() is None and time.monotonic() < until, (tmp_path / "said").read_text()
+        time.sleep(0.005)
+    process.kill()
+    process.wait()
+    assert not (tmp_path / "out.blend").exists()
+    done = sum(path.read_text().count("\n") for path in folder.glob("*.jsonl"))
+    shown = (tmp_path / "said").read_text().count(" triangles, ")
+    assert 3 <= done < 12 and done - shown in (0, 1)
+    report = tmp_path / "report.json"
+    again = subprocess.run([*words, "--resume", "--report", report], env=environment, capture_output=True, text=True)
+    assert again.returncode == 0, again.stderr
+    records = json.loads(report.read_text())["curves"]
+    assert [record["earlier"] for record in records] == [True] * done + [False] * (12 - done)
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "out.blend"))
+    counts = {record["object"]: record["n_triangles"] for record in records}
+    assert counts == {name: len(bpy.data.objects[f"{name} Mesh"].data.polygons) for name in counts}
+
+
+@settings(max_examples=40, deadline=None)
+@given(counts=st.lists(st.integers(0, 5), min_size=1, max_size=6), cut=st.integers(0, 10_000))
+def test_a_journal_that_was_cut_off_anywhere_has_its_whole_entries(tmp_path_factory, counts, cut):
+    target = tmp_path_factory.mktemp("journal") / "out.blend"
+    journal.folder_of(target).mkdir(parents=True)
+    writing = journal.Journal(target, "1")
+    for number, count in enumerate(counts):
+        arrays = [np.full((count, 2), number, dtype=np.float64), np.arange(count, dtype=np.int32)]
+        writing.add(str(number), {"status": "meshed"}, arrays)
+    writing.close()
+    (lines,) = journal.folder_of(target).glob("*.jsonl")
+    text = lines.read_text()
+    text = text[: cut % (len(text) + 1)]
+    lines.write_text(text)
+    entries = journal.Journal(target, "2").entries
+    assert sorted(entries) == [str(number) for number in range(text.count("\n"))]
+    for number, entry in enumerate(entries.values()):
+        first, second = journal.load(entry)
+        assert np.array_equal(first, np.full((counts[number], 2), number)) and len(second) == counts[number]
+
+
+def test_a_claim_is_given_once_and_none_when_no_one_leads(tmp_path):
+    first, second = Claims("run", tmp_path), Claims("run", tmp_path)
+    first.lead()
+    assert first.claim(0, 1) and not second.claim(0, 1) and second.claim(0) and second.is_claimed(0, 1)
+    assert not first.is_claimed(1) and first.count() == 2
+    os.utime(tmp_path / "alive", (0, time.time() - PATIENCE - 1))
+    with pytest.raises(RunIsOver):
+        second.claim(5)

@@ -1,0 +1,190 @@
+"""Meshes that are kept linked: meshed again by the button and at each change; what is the mesh's own stays."""
+
+import bpy
+import numpy as np
+import pytest
+
+from addon.blender import following
+from addon.blender.properties import read_settings
+from tests.blender.drawing import SQUARE, circle, poly_curve, select, vertices
+
+
+@pytest.fixture
+def square():
+    """A square, and the linked mesh of it, which is active."""
+    curve = poly_curve(SQUARE, name="Square")
+    assert bpy.ops.tessera.mesh_curve(edge_length=0.2, keep_linked=True, flips=True) == {"FINISHED"}
+    return curve, bpy.context.object
+
+
+def move(curve, number, x):
+    """One point of the curve, and what Blender does after it."""
+    curve.data.splines[0].points[number].co.x = x
+    curve.data.update_tag()
+    bpy.context.view_layer.update()
+
+
+def right(mesh):
+    return vertices(mesh)[:, 0].max()
+
+
+def test_only_what_was_made_with_keep_linked_is_linked(square):
+    curve, mesh = square
+    assert mesh.tessera.source == curve and read_settings(mesh.tessera.settings).flips
+    assert bpy.ops.tessera.mesh_again.poll() and bpy.ops.tessera.unlink.poll()
+    select(curve)
+    bpy.ops.tessera.mesh_curve(edge_length=0.2)
+    assert bpy.context.object.tessera.source is None and not bpy.ops.tessera.mesh_again.poll()
+
+
+def test_the_button_meshes_again_and_materials_and_modifiers_stay(square):
+    curve, mesh = square
+    mesh.data.materials.append(bpy.data.materials.new("Red"))
+    mesh.modifiers.new("Thick", "SOLIDIFY")
+    mesh["own"], mesh.location = 7, (1, 2, 3)
+    data = mesh.data
+    move(curve, 1, 2.0)
+    assert right(mesh) == 1.0  # not by itself
+    assert bpy.ops.tessera.mesh_again() == {"FINISHED"}
+    assert right(mesh) == 2.0 and mesh.tessera.n_triangles == len(mesh.data.polygons)
+    assert mesh.data == data and [each.name for each in mesh.data.materials] == ["Red"]
+    assert (mesh.modifiers[0].name, mesh["own"], tuple(mesh.location)) == ("Thick", 7, (1, 2, 3))
+    assert len(bpy.data.objects) == 2 and len(bpy.data.meshes) == 1
+
+
+def test_the_button_uses_the_settings_at_the_mesh(square):
+    _, mesh = square
+    before = len(mesh.data.polygons)
+    mesh.tessera.settings.edge_length = 0.1
+    assert len(mesh.data.polygons) == before
+    assert bpy.ops.tessera.mesh_again() == {"FINISHED"}
+    assert 2.5 * before < len(mesh.data.polygons) < 6 * before
+
+
+def test_a_mesh_follows_each_change_when_it_is_wanted(square):
+    curve, mesh = square
+    mesh.tessera.automatic = True
+    for x in (2.0, 1.5):
+        move(curve, 1, x)
+        assert right(mesh) == x
+    mesh.tessera.settings.edge_length = 0.1  # a change of the settings, too
+    bpy.context.view_layer.update()
+    assert mesh.tessera.n_triangles == len(mesh.data.polygons) > 200
+    mesh.tessera.automatic = False
+    move(curve, 1, 3.0)
+    assert right(mesh) == 1.5
+
+
+def test_nothing_is_meshed_for_nothing(square, monkeypatch):
+    curve, mesh = square
+    mesh.tessera.automatic = True
+    bpy.context.view_layer.update()
+    meshed = []
+    from addon.blender import results
+
+    monkeypatch.setattr(results, "rewrite", lambda *args: meshed.append(args))
+    curve.data.update_tag()
+    bpy.context.view_layer.update()
+    curve.location.x = 4.0  # the mesh stays where it is, and the curve's shape is the same
+    bpy.context.view_layer.update()
+    assert not meshed and following._wanted == set()
+    move(curve, 1, 2.0)
+    assert len(meshed) == 1
+
+
+def test_a_curve_that_cannot_be_meshed_leaves_the_mesh_and_says_so(square):
+    curve, mesh = square
+    mesh.tessera.automatic = True
+    before = vertices(mesh)
+    move(curve, 0, 3.0)
+    assert "Curve 'Square', spline 1 crosses or touches itself" in mesh.tessera.message
+    assert np.array_equal(vertices(mesh), before)
+    with pytest.raises(RuntimeError, match="crosses"):
+        bpy.ops.tessera.mesh_again()
+    move(curve, 0, 0.0)
+    assert mesh.tessera.message == ""
+
+
+def test_undo_brings_the_mesh_back_with_its_curve(square):
+    curve, mesh = square
+    mesh.tessera.automatic = True
+    bpy.ops.ed.undo_push(message="linked")
+    for x in (2.0, 3.0):
+        move(curve, 1, x)
+        bpy.ops.ed.undo_push(message=f"moved to {x}")
+    for x in (2.0, 1.0):
+        bpy.ops.ed.undo()
+        assert bpy.data.objects["Square"].data.splines[0].points[1].co.x == x
+        assert right(bpy.data.objects["Square Mesh"]) == x
+    bpy.ops.ed.redo()
+    assert right(bpy.data.objects["Square Mesh"]) == 2.0
+
+
+def test_a_renamed_source_is_still_the_source_and_one_that_is_gone_is_said(square):
+    curve, mesh = square
+    curve.name = "Other"
+    move(curve, 1, 2.0)
+    assert bpy.ops.tessera.mesh_again() == {"FINISHED"} and right(mesh) == 2.0
+    bpy.context.scene.collection.objects.unlink(curve)
+    with pytest.raises(RuntimeError, match="no longer in the scene"):
+        bpy.ops.tessera.mesh_again()
+
+
+def test_what_a_sizing_refers_to_is_followed_too(square):
+    _, mesh = square
+    empty = bpy.data.objects.new("Near", None)
+    bpy.context.scene.collection.objects.link(empty)
+    mesh.tessera.automatic = True
+    mesh.tessera.settings.object_name = empty
+    mesh.tessera.settings.object_length = 0.02
+    mesh.tessera.settings.use_object = True
+    many = len(mesh.data.polygons)
+    empty.name = "Renamed"
+    empty.location = (0.5, 0.5, 0)
+    bpy.context.view_layer.update()
+    assert len(mesh.data.polygons) > 1.3 * many
+
+
+def test_a_mesh_that_takes_too_long_follows_no_longer(square):
+    _, mesh = square
+    mesh.tessera.automatic = True
+    following.stop_if_slow(mesh, 0.3)
+    assert mesh.tessera.automatic and not mesh.tessera.message
+    following.stop_if_slow(mesh, 12.0)
+    assert not mesh.tessera.automatic and "took 12 s" in mesh.tessera.message
+
+
+def test_the_link_is_kept_in_the_file(square, tmp_path):
+    square[1].tessera.automatic = True
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "linked.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "linked.blend"))
+    curve, mesh = bpy.data.objects["Square"], bpy.data.objects["Square Mesh"]
+    assert mesh.tessera.source == curve and mesh.tessera.settings.flips
+    bpy.context.view_layer.update()
+    move(curve, 1, 2.0)
+    assert right(mesh) == 2.0
+
+
+def test_unlinking_makes_a_plain_mesh(square):
+    curve, mesh = square
+    mesh.tessera.automatic = True
+    assert bpy.ops.tessera.unlink() == {"FINISHED"}
+    move(curve, 1, 2.0)
+    assert right(mesh) == 1.0 and mesh.tessera.source is None
+    assert mesh.tessera.n_triangles == len(mesh.data.polygons)
+
+
+def test_two_meshes_of_one_source_are_both_meshed():
+    circle()
+    bpy.ops.tessera.mesh_curve(edge_length=0.4, keep_linked=True)
+    coarse = bpy.context.object
+    select(bpy.data.objects["Circle"])
+    bpy.ops.tessera.mesh_curve(edge_length=0.2, keep_linked=True)
+    fine = bpy.context.object
+    counts = len(coarse.data.polygons), len(fine.data.polygons)
+    select(coarse, fine)
+    bpy.data.objects["Circle"].data.splines[0].bezier_points[0].co.x *= 1.5
+    bpy.context.view_layer.update()
+    assert bpy.ops.tessera.mesh_again() == {"FINISHED"}
+    assert len(coarse.data.polygons) > counts[0] and len(fine.data.polygons) > counts[1]
+    assert len(fine.data.polygons) > 3 * len(coarse.data.polygons)

@@ -1,0 +1,131 @@
+"""Levels: boundaries that hold each other, meshes that are valid and even, and work that can be watched and stopped."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import tessera
+from tessera.coarsening import coarsen
+from tessera.contour import clean_domains, nesting
+from tessera.crossings import crossing_pairs
+from tessera.gradation import Target
+from tessera.levels import mesh_by_levels
+from tessera.outlines import outlines_of
+from tessera.quality import element_quality
+from tessera.steps import finish
+from tessera.stopwatch import Stopwatch
+from tests.library.polygons import circle, seeds
+from tests.library.test_bridges import random_domain
+from tests.validity import check_mesh
+
+CORNER = np.radians(32)
+
+
+def target(edge_length: float) -> Target:
+    return Target({}, None, np.array([edge_length]), np.array([0.0]))
+
+
+def spaced(n: int, radius: float = 1.0) -> np.ndarray:
+    return radius * circle(n)
+
+
+def coarsened(loops, edge_length, most=3):
+    (loops,) = clean_domains([loops])
+    is_hole = np.isin(np.arange(len(loops)), nesting(loops).holes)
+    domain = np.zeros(len(loops), dtype=np.int64)
+    return coarsen(loops, is_hole, domain, target(edge_length), CORNER, np.array([most]))
+
+
+def test_a_round_domain_starts_with_a_quarter_of_its_boundary_twice():
+    found = coarsened([spaced(128)], 2 * np.pi / 128)
+    assert found.levels[0] == 3
+    assert [len(found.loops(level)[0]) for level in range(4)] == [128, 64, 32, 16]
+
+
+def test_a_thin_domain_has_no_levels():
+    x = np.arange(0, 60) / 4
+    loop = np.concatenate([np.column_stack([x, 0 * x]), np.column_stack([x[::-1], 0 * x + 0.5])])
+    assert coarsened([loop], 0.25).levels[0] == 0
+
+
+def test_corners_stay():
+    side = np.arange(40) / 40
+    square = np.concatenate([np.column_stack(s) for s in ((side, 0 * side), (0 * side + 1, side))])
+    square = np.concatenate([square, 1 - square])
+    found = coarsened([square], 1 / 40)
+    assert found.levels[0] >= 2
+    for level in range(found.levels[0] + 1):
+        assert {(0, 0), (1, 0), (1, 1), (0, 1)} <= set(map(tuple, found.loops(level)[0].tolist()))
+
+
+@given(seeds)
+@settings(max_examples=15, deadline=None)
+def test_boundaries_of_all_levels_are_simple_and_hold_the_coarser_ones(seed):
+    loops = [tessera.boundary.resample(loop, 0.04) for loop in clean_domains([random_domain(seed)])[0]]
+    found = coarsened(loops, 0.04)
+    for level in range(int(found.levels[0]) + 1):
+        start = np.concatenate(found.loops(level))
+        ends = np.concatenate([np.roll(loop, -1, axis=0) for loop in found.loops(level)])
+        assert not len(crossing_pairs(start, ends, np.zeros(len(start), dtype=np.int64)))
+        assert all(len(loop) >= 3 for loop in found.loops(level))
+        finer = {tuple(p) for p in np.concatenate(found.loops(max(level - 1, 0))).tolist()}
+        assert {tuple(p) for p in start.tolist()} <= finer
+
+
+@given(seeds, st.integers(0, 3))
+@settings(max_examples=12, deadline=None)
+def test_any_number_of_levels_gives_a_valid_mesh_of_the_same_boundary(seed, most):
+    cleaned = clean_domains([random_domain(seed)])
+    loops = [tessera.boundary.resample(loop, 0.09) for loop in cleaned[0]]
+    if len(crossing_pairs(*tessera.contour.edges_of(loops), np.zeros(sum(map(len, loops)), dtype=np.int64))):
+        return  # resampled by themselves, loops may meet
+    outlines = outlines_of([loops], [nesting(loops)], {}, [0])
+    meshes = finish(mesh_by_levels(outlines, target(0.09), CORNER, 3, Stopwatch(), np.array([most])))
+    used, local = np.unique(meshes.triangles, return_inverse=True)
+    check_mesh(meshes.vertices[used], local.reshape(-1, 3), loops)
+
+
+def test_a_circle_is_better_than_the_paper_s():
+    """q_worst 0.88 and q_mean 0.97 with about 400 nodes (section 4)."""
+    mesh = tessera.mesh([spaced(400)], 0.105)
+    assert 350 < mesh.report.n_vertices < 450
+    assert mesh.report.q_worst >= 0.85 and mesh.report.q_mean >= 0.98
+    edges = tessera.edges.unique_edges(mesh.triangles)
+    lengths = np.linalg.norm(np.diff(mesh.vertices[edges], axis=1)[:, 0], axis=1) / 0.105
+    assert np.mean((lengths > 0.7) & (lengths < 1.4)) > 0.95
+
+
+def test_steps_come_to_what_mesh_makes():
+    loops = [spaced(60), 0.4 * spaced(30)]
+    steps, seen = tessera.mesh_in_steps(loops, 0.15, smooth=2), []
+    while True:
+        try:
+            seen.append(next(steps))
+        except StopIteration as stop:
+            mesh = stop.value
+            break
+    shares = [progress.share for progress in seen]
+    assert shares == sorted(shares) and 0 < shares[0] < 0.1 and 0.9 < shares[-1] <= 1
+    assert {"contours", "networks", "relaxation", "smoothing"} <= {progress.stage for progress in seen}
+    whole = tessera.mesh(loops, 0.15, smooth=2)
+    np.testing.assert_array_equal(mesh.vertices, whole.vertices)
+    np.testing.assert_array_equal(mesh.triangles, whole.triangles)
+
+
+def test_steps_can_be_stopped_and_raise_what_mesh_raises():
+    steps = tessera.mesh_in_steps([spaced(60)], 0.1)
+    next(steps)
+    steps.close()
+    with pytest.raises(StopIteration):
+        next(steps)
+    with pytest.raises(tessera.ContourError) as error:
+        finish(tessera.mesh_in_steps([[(0, 0), (1, 1), (1, 0), (0, 1)]], 0.1))
+    assert error.value.reason == "self-intersection"
+
+
+def test_more_passes_are_asked_for_by_number():
+    few, many = (tessera.mesh([spaced(60)], 0.2, passes=passes) for passes in (0, 4))
+    assert element_quality(many.vertices, many.triangles).mean() > element_quality(few.vertices, few.triangles).mean()
+    with pytest.raises(ValueError, match="passes"):
+        tessera.mesh([spaced(60)], 0.2, passes=-1)
