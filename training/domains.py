@@ -38,7 +38,7 @@ def real_domains() -> list[Domain]:
 
     Every second is meshed with the boundary as it is, which for a glyph is fine along bends and coarse along stems.
     """
-    shapes = _glyphs() + [_airfoil(digits) for digits in _NACA] + _sections()
+    shapes = _glyphs() + [naca(digits) for digits in _NACA] + _sections()
     return [
         Domain(_scaled(shape, wanted), keep=(number + size) % 2 == 1)
         for number, shape in enumerate(shapes)
@@ -178,7 +178,7 @@ def _glyphs() -> list[np.ndarray]:
     return shapes
 
 
-def _airfoil(digits: str) -> np.ndarray:
+def naca(digits: str) -> np.ndarray:
     """A NACA airfoil of four digits, its trailing edge closed."""
     camber, place, thickness = int(digits[0]) / 100, max(int(digits[1]), 1) / 10, int(digits[2:]) / 100
     x = 0.5 * (1 - np.cos(np.linspace(0, np.pi, 60)))

@@ -17,6 +17,7 @@ from .levels import RegionMeshes, mesh_by_levels
 from .mesh import Mesh, make_mesh
 from .notices import gap_warnings, long_edge_warnings, lost_area_warnings, repeated_warnings
 from .outlines import Outlines, outlines_of, resampled
+from .paper import roles_named
 from .placement import MOST_INNER
 from .scheme import LARGEST_CONTOUR, join_vertices, mesh_contours
 from .settings import Settings
@@ -157,11 +158,14 @@ def mesh_many(
     return mesh_domains(domains, edge_length, settings)
 
 
-def mesh_contour(points: ArrayLike, edge_length: float, *, flips: bool = False, smooth: int = 0) -> Mesh:
+def mesh_contour(
+    points: ArrayLike, edge_length: float, *, flips: bool = False, smooth: int = 0, networks: str = "shipped"
+) -> Mesh:
     """Mesh one contour by the paper's scheme alone: 3 ≤ N_C ≤ 16, its vertices are the boundary, untouched.
 
-    points: (N_C, 2); flips, smooth: as in `mesh`. The mesh's first N_C vertices are the contour's, counter-clockwise.
-    Raises ContourError.
+    points: (N_C, 2); flips, smooth: as in `mesh`; networks: "shipped", or the paper's own, "paper" with NN3 and
+    "paper*" with NN3*, for contours that they were trained for (else ContourError "untrained-group"). The mesh's first
+    N_C vertices are the contour's, counter-clockwise. Raises ContourError.
     """
     edge_length, smooth = checked_edge_length(edge_length), checked_steps(smooth)
     contour = clean_loop(points)
@@ -174,7 +178,7 @@ def mesh_contour(points: ArrayLike, edge_length: float, *, flips: bool = False, 
         raise ContourError("too-many-edges", message)
     watch = Stopwatch()
     n_contour = np.array([n])
-    meshes = mesh_contours(contour[None], n_contour, np.array([edge_length]), watch, flips)
+    meshes = mesh_contours(contour[None], n_contour, np.array([edge_length]), watch, flips, roles_named(networks))
     (vertices,) = join_vertices(contour[None], n_contour, meshes.inner, meshes.n_inner)
     if smooth:
         with watch("smoothing"):

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from . import networks
 from .flips import flip_edges
-from .placement import MOST_INNER, place_inner_vertices
+from .placement import MOST_INNER
+from .roles import SHIPPED, Roles
 from .steps import Progress, Steps, finish
 from .stopwatch import Stopwatch
 from .transform import superimpose
@@ -37,9 +37,10 @@ def mesh_contours(
     edge_length: np.ndarray,
     watch: Stopwatch,
     flips: bool = False,
+    roles: Roles = SHIPPED,
 ) -> ContourMeshes:
     """`contours_in_steps`, at once; flips: whether `flips.flip_edges` passes over the meshes in the end."""
-    return finish(contours_in_steps(contours, n_contour, edge_length, watch, flips=flips))
+    return finish(contours_in_steps(contours, n_contour, edge_length, watch, flips=flips, roles=roles))
 
 
 def contours_in_steps(
@@ -50,19 +51,21 @@ def contours_in_steps(
     *,
     flips: bool = False,
     more: np.ndarray | None = None,
+    roles: Roles = SHIPPED,
 ) -> Steps[ContourMeshes]:
     """Mesh contours, each at its own target edge length.
 
     contours: (B, N, 2) float64, simple and counter-clockwise, n_contour (B,) vertices each, 3 to 16, then padding of
-    any value; edge_length: (B,); more: (B,) inner vertices more, or less, than NN1 asks for. A large batch goes through
-    in pieces, so that memory grows by no more than the meshes.
+    any value; edge_length: (B,); more: (B,) inner vertices more, or less, than NN1 asks for; roles: the networks that
+    are asked. A large batch goes through in pieces, so that memory grows by no more than the meshes.
     """
     if more is None:
         more = np.zeros(len(contours), dtype=np.int64)
     pieces = []
     for first in range(0, max(1, len(contours)), _PIECE):
         rows = slice(first, first + _PIECE)
-        pieces.append(_mesh_piece(contours[rows], n_contour[rows], edge_length[rows], watch, flips, more[rows]))
+        part = contours[rows], n_contour[rows], edge_length[rows]
+        pieces.append(_mesh_piece(*part, watch, flips, more[rows], roles))
         yield Progress("networks", min(1.0, (first + _PIECE) / max(1, len(contours))))
     return pieces[0] if len(pieces) == 1 else _join(pieces)
 
@@ -74,6 +77,7 @@ def _mesh_piece(
     watch: Stopwatch,
     flips: bool,
     more: np.ndarray,
+    roles: Roles,
 ) -> ContourMeshes:
     """`contours_in_steps` for all at a time."""
     # Padding of any value: the first vertex again.
@@ -84,12 +88,12 @@ def _mesh_piece(
         transformed = transformation.apply(contours)
         l_s = edge_length * transformation.scale
     with watch("NN1"):
-        wanted = np.maximum(networks.count_inner_vertices(transformed, n_contour, l_s) + more, 0)
-    places, n_inner = place_inner_vertices(transformed, n_contour, np.minimum(wanted, MOST_INNER), watch)
+        wanted = np.maximum(roles.count(transformed, n_contour, l_s) + more, 0)
+    places, n_inner = roles.place(transformed, n_contour, np.minimum(wanted, MOST_INNER), l_s, watch)
     inner = transformation.invert(places)
     with watch("triangulation"):
         points = join_vertices(contours, n_contour, inner, n_inner)
-        meshes = triangulate(points, n_contour, n_inner, lambda *rest: connect(*rest, watch))
+        meshes = triangulate(points, n_contour, n_inner, lambda *rest: connect(*rest, watch, roles))
     triangles = meshes.triangles
     if flips:
         with watch("flips"):
@@ -113,7 +117,12 @@ def _join(pieces: list[ContourMeshes]) -> ContourMeshes:
 
 
 def connect(
-    points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, entries: np.ndarray, watch: Stopwatch
+    points: np.ndarray,
+    n_contour: np.ndarray,
+    n_inner: np.ndarray,
+    entries: np.ndarray,
+    watch: Stopwatch,
+    roles: Roles = SHIPPED,
 ) -> np.ndarray:
     """NN3's values (P, 2) of the entries (P, 3) of (sub-)contours' connection tables.
 
@@ -125,7 +134,7 @@ def connect(
         # Inner vertices start at each contour's own N_C here and at the padded one in the network.
         index = np.minimum(n_contour[:, None] + np.arange(m), points.shape[1] - 1)
         inner = transformed[np.arange(len(points))[:, None], index]
-        rated = networks.rate_connections(transformed[:, :n], n_contour, inner, n_inner, entries)
+        rated = roles.rate(transformed[:, :n], n_contour, inner, n_inner, entries)
         # Rounded, so that a last bit, which may depend on the processor, decides less often.
         return np.round(rated, 4)
 

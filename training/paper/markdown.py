@@ -1,0 +1,227 @@
+"""The report's tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+import torch
+
+from . import texts
+from .claims import NAMED, Claim
+from .comparing import OURS, PAPER
+
+
+def table(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A Markdown table."""
+    return "\n".join(f"| {' | '.join(cells)} |" for cells in (columns, ["---"] * len(columns), *rows))
+
+
+def claim_table(answers: Sequence[Claim]) -> str:
+    """A line for each claim, and how many of each answer."""
+    rows = [[c.what, c.paper, c.ours, f"**{c.answer}**", c.shipped] for c in answers]
+    kinds = sorted({claim.answer for claim in answers})
+    count = ", ".join(f"{sum(claim.answer == kind for claim in answers)} {kind}" for kind in kinds)
+    columns = ["claim", "paper", "the paper's networks, here", "answer", "the shipped networks"]
+    return f"Of {len(answers)}: {count}.\n\n{table(columns, rows)}"
+
+
+def population_table(config: dict, found: dict) -> str:
+    """Of each N_C: contours, meshes of the groups, and epochs of each role, from the runs' own notes."""
+    rows = []
+    for row in found["populations"]["by edges"]:
+        n = row["n"]
+        one, two = epochs(config, f"nn1_{n}"), epochs(config, f"nn2_{n}")
+        three = [epochs(config, f"nn3_{n}_{m}") for m in config["nn3"]["groups"].get(n, ())]
+        inner = list(config["nn3"]["groups"].get(n, ()))
+        meshes = [row["groups"][m] for m in config["nn2"]["groups"][n] if m < len(row["groups"])]
+        rows.append(
+            [
+                str(n),
+                texts.PAPER_POPULATIONS.get(n, "not said"),
+                f"{row['contours']:,}",
+                _range(one),
+                f"{_ints(config['nn2']['groups'][n])}: {min(meshes, default=0):,} to {max(meshes, default=0):,}",
+                f"{100 * row['covered']:.0f} %",
+                _range(two),
+                _ints(inner) if inner else "—",
+                _range([value for part in three for value in part]),
+            ]
+        )
+    columns = ["N_C", "contours, paper", "contours", "NN1: epochs (3000)", "NN2's groups N_I: meshes", "of all meshes"]
+    return table([*columns, "NN2: epochs (5000)", "NN3's groups N_I", "NN3: epochs (5000)"], rows)
+
+
+def epochs(config: dict, run: str) -> list[float]:
+    """Of each network of a run, as far as it came; none where it is not there."""
+    file = config["folders"]["runs"] / f"{run}.pt"
+    if not file.exists():
+        return []
+    state = torch.load(file, weights_only=False)
+    return [value * state["step"] / state["notes"]["steps"] for value in state["notes"]["epochs"]]
+
+
+def _range(values: Sequence[float]) -> str:
+    if not values:
+        return "—"
+    low, high = f"{min(values):.0f}", f"{max(values):.0f}"
+    return low if low == high else f"{low}–{high}"
+
+
+def _ints(values: Sequence[int]) -> str:
+    """1, 2, 3, 5 as 1–3, 5."""
+    parts: list[list[int]] = []
+    for value in values:
+        if parts and value == parts[-1][-1] + 1:
+            parts[-1].append(value)
+        else:
+            parts.append([value])
+    return ", ".join(f"{part[0]}–{part[-1]}" if len(part) > 1 else str(part[0]) for part in parts)
+
+
+def count_table(rows: list[dict]) -> str:
+    """Both networks' errors by N_C and target edge length."""
+    targets = sorted({row["l_s"] for row in rows})
+    lines = []
+    for n in sorted({row["n"] for row in rows}):
+        cells = []
+        for l_s in targets:
+            pair = [
+                next(r["error"] for r in rows if (r["n"], r["l_s"], r["networks"]) == (n, l_s, name))
+                for name in (PAPER, OURS)
+            ]
+            spread = next(r["deviation"] for r in rows if (r["n"], r["l_s"]) == (n, l_s))
+            cells.append(f"{pair[0]:.2f} / {pair[1]:.2f} ({spread:.1f})")
+        lines.append([str(n), *cells])
+    return "The paper's networks / the shipped ones (standard deviation of N_I).\n\n" + table(
+        ["N_C", *(f"{t:g}" for t in targets)], lines
+    )
+
+
+def resolution_table(rows: list[dict]) -> str:
+    """Mean squared distances by N_C and grid."""
+    lines = []
+    for n in sorted({row["n"] for row in rows}):
+        own = [row for row in rows if row["n"] == n]
+        cells = [f"{row['error']:.4f} ± {row['spread']:.4f}" for row in sorted(own, key=lambda row: row["grid"])]
+        lines.append([str(n), str(own[0]["meshes"]), str(own[0]["contours"]), *cells])
+    grids = sorted({row["grid"] for row in rows})
+    return table(["N_C", "meshes learnt from", "tested", *(f"{grid}×{grid}" for grid in grids)], lines)
+
+
+def exclusion_table(rows: list[dict]) -> str:
+    """NN2's ē_worst on training meshes, by the radius of exclusion: means over groups."""
+    radii = sorted({row["radius"] for row in rows}, key=lambda radius: radius or 0)
+    means = []
+    for radius in radii:
+        values = [row["worst"] for row in rows if row["radius"] == radius and row["worst"] is not None]
+        means.append(f"{np.mean(values):+.1f}" if values else "—")
+    names = ["the paper's 0.1 l_s" if radius is None else f"{radius:g} even edges" for radius in radii]
+    return table(["radius of exclusion", *names], [["mean of the groups' ē_worst, %, training meshes", *means]])
+
+
+def stage_parts(rows: list[dict], exclusion: list[dict]) -> list[str]:
+    """Figs. 22, 24, 25 and 27, each with its sentence, picture and table of groups."""
+    parts = []
+    for figure, (title, text) in texts.STAGES.items():
+        own = [row for row in rows if row["figure"] == figure and row["m"] is not None]
+        parts += [f"## Fig. {figure}: {title}", text]
+        if figure == 27:
+            parts.append(_shares(rows))
+        if figure == 22:
+            parts.append(exclusion_table(exclusion))
+        parts += [f"![Fig. {figure}](reproduction/fig_{figure}.png)", stage_table(own, figure)]
+    return parts
+
+
+def stage_table(rows: list[dict], figure: int) -> str:
+    """A line for each group: ē_worst / ē_mean by both networks."""
+    lines = []
+    for n, m in sorted({(row["n"], row["m"]) for row in rows}):
+        cells = []
+        for name in (PAPER,) if figure == 24 else (PAPER, OURS):
+            row = next((r for r in rows if (r["n"], r["m"], r["networks"]) == (n, m, name) and r["contours"]), None)
+            cells.append(
+                "—" if row is None else f"{row['worst']:+.1f} ± {row['worst_spread']:.1f} / {row['mean']:+.1f}"
+            )
+        count = next((row["contours"] for row in rows if (row["n"], row["m"]) == (n, m)), 0)
+        named = NAMED[figure].get((n, m))
+        lines.append([str(n), str(m), str(count), "" if named is None else f"{named:g}", *cells])
+    names = ["calculated tables"] if figure == 24 else [PAPER, OURS]
+    head = ["N_C", "N_I", "contours", "paper's ē_worst", *(f"{name}: ē_worst / ē_mean, %" for name in names)]
+    return f"<details><summary>All groups</summary>\n\n{table(head, lines)}\n\n</details>"
+
+
+def _shares(rows: list[dict]) -> str:
+    shares = [row for row in rows if row["figure"] == 27 and row["m"] is None]
+    text = ", ".join(
+        f"{100 * row['in trained groups'] / max(1, row['meshes']):.0f} % of N_C {row['n']}" for row in shares
+    )
+    own = [row for row in rows if row["figure"] == 27 and row["m"] and row["networks"] == PAPER and row["contours"]]
+    fell = np.average([r["fallbacks"] for r in own], weights=[r["contours"] for r in own]) if own else 0.0
+    return (
+        f"NN1 asks for a trained group in {text}. Sub-contours of groups without a network have no table, and take the "
+        f"constrained Delaunay triangulation's element: {fell:.2f} elements a contour."
+    )
+
+
+def adaptive_table(rows: list[dict]) -> str:
+    """Table 1, with what was found beside it."""
+    lines = [
+        [
+            str(row["m"]),
+            row["sampling"],
+            f"{row['population']:.0f}",
+            str(row["level"]),
+            str(row["size"]),
+            f"{row['contours learnt from']}",
+            f"{row['epochs']:.0f}",
+            f"{row['loss'] ** 0.5:.3f}",
+            "—" if row["worst"] is None else f"{row['worst']:+.1f} ± {row['worst_spread']:.1f}",
+            str(row["contours"]),
+        ]
+        for row in rows
+    ]
+    columns = ["N_I", "sampling", "inner vertices a contour", "confidence, %", "sample", "contours", "epochs"]
+    return table([*columns, "training loss (root)", "ē_worst, %", "tested"], lines)
+
+
+def domain_table(rows: list[dict]) -> str:
+    """Table 2."""
+    lines = [
+        [
+            row["name"],
+            *("{:.2f}, {:.2f}".format(*pair) for pair in (texts.TABLE_2[row["name"]], (row["q_worst"], row["q_mean"]))),
+            str(row["triangles"]),
+        ]
+        for row in rows
+    ]
+    return table(["", "paper: q_worst, q_mean", "the shipped networks", "triangles"], lines)
+
+
+def speed_table(rows: list[dict]) -> str:
+    """Milliseconds a contour."""
+    names = [name for name in rows[0] if name not in ("n", "contours")] if rows else []
+    lines = [[str(row["n"]), str(row["contours"]), *(f"{row[name]:.2f}" for name in names)] for row in rows]
+    return table(["N_C", "contours", *(f"{name}, ms" for name in names)], lines)
+
+
+def learning_table(rows: list[dict]) -> str:
+    """Sizes and losses."""
+    lines = [
+        [
+            row["role"],
+            row["what"],
+            ", ".join(f"{row['steps'][i]:,}: {row['training'][i]:.3g}" for i in _quarters(len(row["steps"]))),
+            ", ".join(f"{size:,}: {loss:.3g}" for size, loss in zip(row["size"], row["loss"], strict=True)),
+        ]
+        for row in rows
+    ]
+    return table(
+        ["", "on test contours", "batches seen, of the largest population: training loss", "population: loss"], lines
+    )
+
+
+def _quarters(count: int) -> list[int]:
+    """Numbers of a quarter, a half and the whole of some."""
+    return sorted({max(0, count * k // 4 - 1) for k in (1, 2, 4)})

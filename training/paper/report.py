@@ -1,0 +1,118 @@
+"""The report: ``python -m training.paper.report`` writes ``docs/reproduction.md`` and its pictures.
+
+From what the experiments have left in ``runs/paper/results/``; the sentences on differences are in `texts`.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from tessera.paper_placement import grid_points
+
+from .. import reference
+from . import markdown, plots, settings, texts
+from .claims import claims
+from .comparing import read
+from .data import load
+from .sampling import GRID
+from .surfaces import inside, quality_surfaces, sampled, smoothed
+
+NAMES = ("populations", "counts", "resolution", "adaptive", "domains", "learning", "exclusion", "speed")
+
+
+def main() -> None:
+    """Write the report."""
+    config, _ = settings.from_command_line(__doc__)
+    print(write_report(config))
+
+
+def write_report(config: dict) -> Path:
+    """Write the text and draw the pictures; returns the text's file."""
+    found = {name: read(config, name) for name in NAMES}
+    found["stages"] = [row for n in config["data"]["train"] for row in read(config, f"stages_{n}")]
+    folder = config["folders"]["docs"]
+    (folder / "reproduction").mkdir(parents=True, exist_ok=True)
+    draw(folder / "reproduction", config, found)
+    parts = ["# The paper, reproduced", texts.introduction(config, reference.VERSION)]
+    parts += ["## The paper's claims", markdown.claim_table(claims(found)), "## Populations and epochs"]
+    sizes = {role: config[role]["meshes"] for role in ("nn2", "nn3")}
+    parts += [
+        texts.POPULATIONS.format(**sizes),
+        markdown.population_table(config, found),
+        _picture("Figs. 17 and 18", "populations"),
+    ]
+    parts += figures(found)
+    file = folder / "reproduction.md"
+    file.write_text("\n\n".join(parts) + "\n")
+    return file
+
+
+def figures(found: dict) -> list[str]:
+    """Sentences, pictures and tables of all figures from 19 on."""
+    return [
+        "## Fig. 19: the number of inner vertices (NN1)",
+        texts.COUNTS,
+        _picture("Fig. 19", "counts"),
+        markdown.count_table(found["counts"]),
+        "## Fig. 21: the grid's resolution (NN2)",
+        texts.RESOLUTION,
+        _picture("Fig. 21", "resolution"),
+        markdown.resolution_table(found["resolution"]),
+        *markdown.stage_parts(found["stages"], found["exclusion"]),
+        "## Table 1, Figs. 15, 16 and 26: adaptive sampling (NN3*)",
+        texts.ADAPTIVE,
+        *(_picture(f"Fig. {14 + m}", f"surface_{m}") for m in (1, 2)),
+        _picture("Fig. 26", "adaptive"),
+        markdown.adaptive_table(found["adaptive"]),
+        "## Table 2, Figs. 28 to 30: larger domains",
+        texts.DOMAINS,
+        _picture("Figs. 28 to 30", "domains"),
+        markdown.domain_table(found["domains"]),
+        "## Section 5: speed",
+        texts.SPEED,
+        markdown.speed_table(found["speed"]),
+        "## What larger populations would give",
+        texts.LEARNING,
+        _picture("Learning curves", "learning"),
+        markdown.learning_table(found["learning"]),
+    ]
+
+
+def _picture(title: str, name: str) -> str:
+    return f"![{title}](reproduction/{name}.png)"
+
+
+def draw(folder: Path, config: dict, found: dict) -> None:
+    """All pictures."""
+    plots.draw_populations(folder / "populations.png", found["populations"])
+    plots.draw_counts(folder / "counts.png", found["counts"])
+    plots.draw_resolution(folder / "resolution.png", found["resolution"])
+    for figure in texts.STAGES:
+        plots.draw_stage(folder / f"fig_{figure}.png", found["stages"], figure)
+    plots.draw_adaptive(folder / "adaptive.png", found["adaptive"])
+    plots.draw_learning(folder / "learning.png", found["learning"])
+    with np.load(config["folders"]["runs"] / "results" / "domains.npz") as meshes:
+        names = [row["name"] for row in found["domains"]]
+        plots.draw_meshes(
+            folder / "domains.png", {n: (meshes[f"{n} vertices"], meshes[f"{n} triangles"]) for n in names}
+        )
+    population = load(config, "train", config["nn3_star"]["n_contour"])
+    for m in (1, 2):
+        group = population.group(m)
+        if len(group):
+            draw_surface(folder / f"surface_{m}.png", group.contour[0], group.inner[0], float(group.l_s[0]))
+
+
+def draw_surface(path: Path, contour: np.ndarray, inner: np.ndarray, l_s: float) -> None:
+    """Figs. 15 and 16: what one edge's vertices are sampled from, the mesh's other inner vertices given."""
+    spots, others = inside(contour, l_s), inner[1:]
+    surfaces = quality_surfaces(contour, others, spots)
+    smooth = smoothed(surfaces, spots)
+    numbers = sampled(np.random.default_rng(0), surfaces, spots)[0]
+    plots.draw_surfaces(path, contour, (surfaces[0], smooth[0]), grid_points(GRID)[numbers], others)
+
+
+if __name__ == "__main__":
+    main()
