@@ -19,6 +19,7 @@ from .gradation import Target
 from .thickness import thin_parts
 
 MOST_LEVELS = 3
+MOST_SEGMENTS = 5  # of the finer boundary to an edge of the coarser one
 # Of the largest elements, so many fit across thin parts, and their edges are at most so many radii of curvature long.
 _ACROSS, _CURVED = 4.5, 0.6
 _SLOPE = 0.4  # how fast they may grow from there, in length per length
@@ -180,4 +181,10 @@ def _coarser(corner: np.ndarray, passed: np.ndarray) -> np.ndarray:
     wanted = np.where(halved, size // 2, wanted)
     passed = np.where(np.repeat(halved, size), 0.5, passed)
     places = even_spacing(start, np.arange(n + 1.0), np.concatenate([[0.0], np.cumsum(passed)]), wanted)
-    return np.unique((np.rint(places).astype(np.int64) + first) % n)
+    kept = np.unique(np.rint(places).astype(np.int64) % n)
+    # No more between two than a sub-contour has room for, however close together they are.
+    gap = np.diff(kept, append=kept[0] + n)
+    parts = -(-gap // MOST_SEGMENTS)
+    place = np.repeat(np.arange(len(kept)), parts)
+    step = np.arange(len(place)) - np.repeat(np.cumsum(parts) - parts, parts)
+    return np.unique((kept[place] + gap[place] * step // parts[place] + first) % n)

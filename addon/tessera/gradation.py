@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -58,10 +59,14 @@ class Target:
         """The target of one domain: points (n, 2) -> lengths (n,)."""
         return lambda points: self(points, np.full(len(points), domain))
 
-    @property
-    def constant(self) -> bool:
-        """Whether there is one length for each domain."""
-        return not self.functions and self.cones is None
+    @cached_property
+    def constant(self) -> np.ndarray:
+        """(d,) which domains have one length everywhere."""
+        constant = np.ones(len(self.most), dtype=bool)
+        constant[list(self.functions)] = False
+        if self.cones is not None:
+            constant[self.cones.places.domain] = False
+        return constant
 
 
 def prepare(

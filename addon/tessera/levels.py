@@ -51,10 +51,11 @@ def mesh_by_levels(
     with watch("coarsening"):
         coarsening = coarsen(outlines.loops, outlines.is_hole, outlines.domain, target, corner_angle, most)
     parts, done, domains = [], 0.0, outlines.domains
-    # Domains of as many levels together, so that each goes the same way as it would alone.
-    for number in np.unique(coarsening.levels[domains]):
-        some, rows, regions = outlines.of_domains(np.flatnonzero(coarsening.levels == number))
-        end = done + 0.9 * len(regions) / len(domains)
+    # Domains of as many levels together, and with one target or several, so that each goes the way it would alone.
+    kind = 2 * coarsening.levels + target.constant
+    for number in np.unique(kind[domains]):
+        some, rows, regions = outlines.of_domains(np.flatnonzero(kind == number))
+        end = done + len(regions) / len(domains)
         steps = _mesh_levels(some, coarsening.of_loops(rows), passes, watch)
         meshes, failed = yield from within(steps, done, end)
         parts.append((meshes, regions))
@@ -91,7 +92,7 @@ def _mesh_levels(
     top = int(coarsening.levels[domain[0]])
     # A level has about four times as many elements as the one before.
     ends = 0.25 ** np.arange(top, -1, -1.0)
-    meshes = yield from within(_mesh_coarse(outlines, coarsening, top, watch), 0.0, ends[0] / 2)
+    meshes = yield from within(_mesh_coarse(outlines, coarsening, top, watch), 0.0, ends[0] / 4)
     vertices, triangles, region, fallbacks = meshes.vertices, meshes.triangles, meshes.region, meshes.fallbacks
     number, failed = np.flatnonzero(coarsening.level >= top), []
     for level in range(top, -1, -1):
@@ -107,10 +108,11 @@ def _mesh_levels(
         fallbacks[np.isin(domain, failed[-1])] = 0
         stay = ~np.isin(domain[region[refined.parent]], failed[-1])
         vertices, triangles, region = refined.vertices, refined.triangles[stay], region[refined.parent][stay]
-        if len(triangles):
-            improvement = improve(vertices, triangles, region, passes, watch, meshes.fixed)
-            vertices, triangles, region, more = yield from within(improvement, middle, end)
-            fallbacks[: len(more)] += more
+        if not len(triangles):
+            break
+        improvement = improve(vertices, triangles, region, passes, watch, meshes.fixed)
+        vertices, triangles, region, more = yield from within(improvement, middle, end)
+        fallbacks[: len(more)] += more
     return RegionMeshes(vertices, triangles, region, fallbacks, meshes.fixed), np.concatenate(failed)
 
 
@@ -146,7 +148,7 @@ def _mesh_coarse(outlines: Outlines, coarsening: Coarsening, top: int, watch: St
     target, domain = coarsening.target, outlines.domains
     with watch("division"):
         wanted = _Wanted(coarsening, top, domain)
-        varying = None if target.constant and top == 0 else wanted
+        varying = None if target.constant[domain[0]] and top == 0 else wanted
         points, polygons, fixed = _at_level(outlines, coarsening, top).polygons(target.most[domain] * 2.0**top, varying)
         division = divide(points, polygons, target.most[domain] * 2.0**top, varying)
         if varying is None:

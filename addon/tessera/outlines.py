@@ -114,12 +114,17 @@ def outlines_of(results: list, nested: list[Nesting], planar: dict[int, PlanarDo
 
 def resampled(outlines: Outlines, target: Target, corner_angle: float) -> Outlines:
     """The same with new vertices at the target edge length; corner_angle: in radians."""
-    loops, graphs = outlines.loops, {}
-    if loops:
-        spacing = target.most[outlines.domain] if target.constant else target
-        loops = resample_loops(loops, spacing, outlines.domain, corner_angle)
+    loops, graphs, constant = list(outlines.loops), {}, target.constant
+    # By themselves where the target is the same everywhere, so that a batch changes nothing.
+    for rows in (np.flatnonzero(constant[outlines.domain]), np.flatnonzero(~constant[outlines.domain])):
+        if len(rows):
+            domain = outlines.domain[rows]
+            spacing = target.most[domain] if constant[domain[0]] else target
+            new = resample_loops([loops[row] for row in rows], spacing, domain, corner_angle)
+            for row, loop in zip(rows, new, strict=True):
+                loops[row] = loop
     for number, graph in outlines.graphs.items():
-        spacing = float(target.most[number]) if target.constant else target.inside(number)
+        spacing = float(target.most[number]) if constant[number] else target.inside(number)
         graphs[number] = resample_graph(graph, spacing, corner_angle)
     return replace(outlines, loops=loops, graphs=graphs)
 

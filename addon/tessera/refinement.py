@@ -21,6 +21,7 @@ from .edges import among, inner_edges, off_boundary, sides
 from .finer import Arcs
 from .quality import element_quality
 from .relaxation import relax
+from .scheme import LARGEST_CONTOUR
 from .steps import Steps, within
 from .stopwatch import Stopwatch
 
@@ -41,7 +42,7 @@ class Refined:
     """A finer mesh: vertices (n, 2), the old ones first; triangles (t, 3); the old triangle that each is part of (t,).
 
     fallbacks: (m,) of each old triangle; number: (n,) the point of the boundary that each vertex is, or -1; failed:
-    domains whose boundary could not be refined, and which are left as they were then.
+    domains whose boundary does not fit the mesh: their triangles are the old ones.
     """
 
     vertices: np.ndarray
@@ -97,10 +98,11 @@ def refine(
         cells = _sub_contours(len(vertices), triangles, edges, segments)
         split = (cells[:, 3:] >= 0).any(axis=1)
         if arcs is not None:
-            arcs, bad = None, _not_simple(points, cells, split)
+            arcs, bad = None, _unfit(points, cells, split)
             failed = np.unique(domain[parent[bad]])
             split &= ~np.isin(domain[parent], failed)
-        meshing = mesh_cells(points, cells[split], mean_edge_lengths(points, cells[split]), watch)
+        contours = cells[split, :LARGEST_CONTOUR]
+        meshing = mesh_cells(points, contours, mean_edge_lengths(points, contours), watch)
         vertices, new, owner, fell = yield from within(meshing, start, end)
         number = np.concatenate([number, places, np.full(len(vertices) - len(points), -1)])
         np.add.at(fallbacks, parent[split], fell)
@@ -126,15 +128,18 @@ def _with_arcs(
     return segments, all_points, places
 
 
-def _not_simple(points: np.ndarray, cells: np.ndarray, split: np.ndarray) -> np.ndarray:
-    """Rows of cells (m, 15) that are no simple counter-clockwise polygons, of those that are split."""
+def _unfit(points: np.ndarray, cells: np.ndarray, split: np.ndarray) -> np.ndarray:
+    """Rows of cells (m, N) that the scheme cannot mesh, of those that are split.
+
+    They have more than 16 vertices, or are no simple counter-clockwise polygons.
+    """
     rows = np.flatnonzero(split)
     count = (cells[rows] >= 0).sum(axis=1)
     corners, row = cells[rows][cells[rows] >= 0], np.repeat(rows, count)
     _, after = neighbours(count)
     pairs = crossing_pairs(points[corners], points[corners[after]], row)
     reversed_ = areas(points[cells[rows]], count) <= 0
-    return np.concatenate([row[pairs[:, 0]], rows[reversed_]])
+    return np.concatenate([row[pairs[:, 0]], rows[reversed_ | (count > LARGEST_CONTOUR)]])
 
 
 def _segments(
@@ -177,9 +182,9 @@ def _inserted(ends: np.ndarray, segments: np.ndarray, wanted: np.ndarray) -> np.
 
 
 def _sub_contours(n: int, triangles: np.ndarray, edges: np.ndarray, segments: np.ndarray) -> np.ndarray:
-    """Each triangle's contour (m, 15), padded with -1, when its edges are split; inserted vertices count from n on.
+    """Each triangle's contour (m, N), N at least 15, padded with -1, when its edges are split.
 
-    segments: (e,) how many each edge comes to.
+    n: from which inserted vertices count; segments: (e,) how many each edge comes to.
     """
     first = np.cumsum(segments - 1) - (segments - 1)
     most = max(MOST_SEGMENTS, int(segments.max()))
@@ -195,4 +200,4 @@ def _sub_contours(n: int, triangles: np.ndarray, edges: np.ndarray, segments: np
             cells[:, side, k] = np.where(k < segments[of], n + first[of] + here, -1)
     cells = cells.reshape(len(triangles), -1)
     order = np.argsort(cells < 0, axis=1, kind="stable")
-    return np.take_along_axis(cells, order, axis=1)[:, :15]
+    return np.take_along_axis(cells, order, axis=1)

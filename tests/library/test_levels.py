@@ -129,3 +129,44 @@ def test_more_passes_are_asked_for_by_number():
     assert element_quality(many.vertices, many.triangles).mean() > element_quality(few.vertices, few.triangles).mean()
     with pytest.raises(ValueError, match="passes"):
         tessera.mesh([spaced(60)], 0.2, passes=-1)
+
+
+def crowded(n: int, more: int) -> np.ndarray:
+    """A circle of n vertices, with so many more between two of them."""
+    turn = 2 * np.pi * np.arange(n) / n
+    turn = np.sort(np.concatenate([turn, np.linspace(turn[5], turn[6], more + 2)[1:-1]]))
+    return np.column_stack([np.cos(turn), np.sin(turn)])
+
+
+@pytest.mark.parametrize("more", [3, 12, 30])
+def test_given_vertices_may_be_crowded(more):
+    loop = crowded(64, more)
+    mesh = tessera.mesh([loop], 2 * np.pi / 64, boundary="keep")
+    check_mesh(mesh.vertices, mesh.triangles, [loop])
+
+
+def test_a_level_that_does_not_fit_is_left_out():
+    """Alone, and beside domains that fit."""
+    domain = random_domain(70117)
+    cleaned = clean_domains([domain])[0]
+    others = [[spaced(50)], [spaced(70)]]
+    alone, *_ = tessera.mesh_many([domain], 0.1)
+    beside = tessera.mesh_many([others[0], domain, others[1]], 0.1)[1]
+    np.testing.assert_array_equal(alone.vertices, beside.vertices)
+    np.testing.assert_array_equal(alone.triangles, beside.triangles)
+    assert len(cleaned) and alone.report.q_mean > 0.9
+
+
+def test_a_domain_of_one_target_is_the_same_beside_one_of_several():
+    sizing = tessera.by_thickness(4)
+    alone = tessera.mesh([spaced(12)], 0.3, sizing=sizing)
+    beside = tessera.mesh_many([[spaced(12)], [0.01 * spaced(9)]], 0.3, sizing=sizing)[0]
+    np.testing.assert_array_equal(alone.vertices, beside.vertices)
+    np.testing.assert_array_equal(alone.triangles, beside.triangles)
+
+
+def test_progress_goes_on_over_levels():
+    shares, steps = [], tessera.mesh_in_steps([spaced(300)], 0.05)
+    for progress in steps:
+        shares.append(progress.share)
+    assert shares == sorted(shares) and shares[-1] == pytest.approx(1)

@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import tessera
+from tessera.budget import checked_domain
 from tessera.contour import nesting
-from tessera.meshing import checked_domain, mesh_domains
+from tessera.meshing import mesh_domains
 from tessera.settings import Settings
 from tests.library.polygons import LETTER_E, circle, letter_s, placed, placements, simple_polygons, star
 from tests.validity import check_mesh, polygon_area
