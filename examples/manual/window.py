@@ -91,7 +91,7 @@ def select(*objects: bpy.types.Object) -> None:
 
 
 def look_down(objects: Sequence[bpy.types.Object], fill: float = 0.8, aside: float = 0.0) -> None:
-    """Select the objects and see them from the top, in a share of the view's width; aside: how much of it they go left."""
+    """Select the objects and see them from the top; fill: their share of the view; aside: how much they go left."""
     select(*objects)
     in_view(bpy.ops.view3d.view_axis, type="TOP")
     region = view().region_3d
