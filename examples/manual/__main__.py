@@ -1,7 +1,7 @@
 """The manual's pictures: ``python -m examples.manual [window | settings]`` writes docs/images/manual/ and window.png.
 
-Those of Blender's window need the tool that the environment variable REAL_BLENDER names, whose `gui` opens a window on a
-virtual screen, and the wheels of `make wheels`, as the extension is built and installed into folders of its own.
+Those of Blender's window need the tool that the environment variable REAL_BLENDER names, whose `gui` opens a window on
+a virtual screen, and the wheels of `make wheels`, as the extension is built and installed into folders of its own.
 """
 
 from __future__ import annotations
