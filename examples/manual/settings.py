@@ -151,7 +151,7 @@ def boundary() -> list[Panel]:
 
 
 def corners() -> list[Panel]:
-    """Corner Angle, on a polygon whose vertices turn by 40 degrees at the right."""
+    """Corner Angle, on an outline that turns by 22 to 40 degrees at the marks."""
     panels = []
     for angle in (20, 60):
         panels.append(Panel(f"Corner Angle {angle}°", tessera.mesh(ROUND, 0.33, corner_angle=angle), ROUND[0][:4]))
@@ -200,11 +200,11 @@ def draw(panels: list[Panel], path: Path) -> None:
     for ax, panel in zip(axes, panels, strict=True):
         draw_mesh(ax, panel.mesh.vertices, panel.mesh.triangles)
         if panel.marks is not None:
-            ax.plot(*panel.marks.T, "o", color="#e63946", ms=2.5)
+            ax.plot(*panel.marks.T, "o", color="#e63946", ms=3.5, zorder=3)
         ax.set_title(panel.title, fontsize=7)
     figure.tight_layout()
     figure.savefig(path, dpi=110, bbox_inches="tight")
     plt.close(figure)
     with Image.open(path) as drawn:
-        few = drawn.convert("RGB").quantize(_COLOURS, dither=Image.Dither.NONE)
+        few = drawn.convert("RGB").quantize(_COLOURS, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
     few.save(path, optimize=True)
