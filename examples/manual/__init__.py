@@ -1,0 +1,1 @@
+"""The manual's pictures: ``python -m examples.manual`` makes all of them again, and says how."""
