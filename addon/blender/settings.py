@@ -147,7 +147,11 @@ class Settings:
         lambda s: s.use_weight,
     )
     use_object: bool = _setting(
-        False, "By Object", "Smaller triangles near an empty, a mesh, a curve or grease-pencil strokes", "sizing"
+        False,
+        "By Object",
+        "Smaller triangles near an empty, a mesh, a curve or grease-pencil strokes",
+        "sizing",
+        remembered=False,
     )
     object_name: str = _setting(
         "",

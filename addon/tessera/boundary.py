@@ -12,6 +12,7 @@ from .sampling import cut
 # A vertex is a corner where the contour turns by more than this; a regular polygon of 12 sides, which turns by 30
 # degrees at its vertices, is still a coarse circle.
 CORNER_ANGLE = np.radians(32.0)
+_HALVED = 24  # edges from which it is worth while that a loop's boundary can be halved
 # Numbers of edges that are as close to two whole numbers are rounded down, whatever the last bit says.
 _TIE = 1e-9
 # With a sizing function, edges are looked at in pieces of at most this share of the length that is wanted there, and
@@ -195,7 +196,8 @@ def resampled_places(
     """
     arc_start = np.flatnonzero(breaks)
     arcs = np.diff(passed[np.searchsorted(position, arc_start)], append=passed[-1])
-    return even_spacing(arc_start, position, passed, halvable(count_edges(arcs / an_edge, fewest)))
+    n_edges = count_edges(arcs / an_edge, fewest)
+    return even_spacing(arc_start, position, passed, halvable(n_edges) if n_edges.sum() >= _HALVED else n_edges)
 
 
 def _points_at(points: np.ndarray, length: np.ndarray, loop: np.ndarray, position: np.ndarray) -> np.ndarray:

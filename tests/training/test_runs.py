@@ -41,7 +41,7 @@ def run(monkeypatch, role, steps):
     train.main()
 
 
-@pytest.mark.parametrize("role", list(ROLES))
+@pytest.mark.parametrize("role", list(train.LOSSES))
 def test_a_killed_run_goes_on_as_if_it_had_not_been(role, workplace, monkeypatch):
     run(monkeypatch, role, 4)
     whole = torch.load(workplace / "runs" / f"{role}.pt", weights_only=False)
