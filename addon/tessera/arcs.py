@@ -12,13 +12,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .boundary import knots_of, resampled_places, vertices_as_knots
+from .boundary import PATIENCE, knots_of, resampled_places, vertices_as_knots
 from .crossings import crossing_pairs
 from .faces import find_cycles
 from .graph import Graph, graph_faces, half_edges
-
-# After so many rounds of single insertions all the given vertices of an edge's arc are inserted at once.
-_PATIENCE = 12
 
 
 @dataclass(frozen=True)
@@ -67,7 +64,7 @@ def resample_graph(graph: Graph, edge_length: float | Callable[[np.ndarray], np.
         bad = _bad_edges(sampled, len(arcs), faces)
         if not bad.any():
             return sampled.graph
-        inserted = _given_between(graph, arcs, sampled, np.flatnonzero(bad), rounds < _PATIENCE)
+        inserted = _given_between(graph, arcs, sampled, np.flatnonzero(bad), rounds < PATIENCE)
         if not inserted:
             places = [np.arange(n, dtype=float) for n in length]
         for arc, more in inserted:

@@ -19,7 +19,7 @@ _TIE = 1e-9
 # of a loop's size.
 _PIECE, _LONGEST_PIECE = 0.5, 1 / 64
 # After so many rounds of single insertions all the given vertices between two neighbours are inserted at once.
-_PATIENCE = 12
+PATIENCE = 12
 
 
 def resample(loop: np.ndarray, edge_length: float) -> np.ndarray:
@@ -222,7 +222,7 @@ def _insertions(samples, points, length, loop, position, group, rounds):
     low, between = (part[edges] for part in skipped)
     edge = np.repeat(np.arange(len(edges)), between)
     vertex = np.arange(len(edge)) - np.repeat(np.cumsum(between) - between, between) + low[edge]
-    if rounds < _PATIENCE and len(edge):
+    if rounds < PATIENCE and len(edge):
         a, b = samples[edges][edge], samples[after[edges]][edge]
         offset, along = points[vertex] - a, b - a
         distance = np.abs(along[:, 0] * offset[:, 1] - along[:, 1] * offset[:, 0])

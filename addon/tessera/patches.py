@@ -91,14 +91,21 @@ def _patches(
     return np.where(spoiled[best], -1, best)
 
 
-def _swallowing(triangles: np.ndarray, patch: np.ndarray, fixed: np.ndarray) -> np.ndarray:
-    """The patches that have a fixed edge between two of their elements, or one of its vertices amid them."""
+def _half_edges(triangles: np.ndarray, patch: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Start, end and patch of each half-edge of patches' elements (h,), and whether its twin is in the same patch."""
     inside = np.flatnonzero(patch >= 0)
-    start, end = triangles[inside].ravel(), np.roll(triangles[inside], -1, axis=1).ravel()
+    start = triangles[inside].ravel().astype(np.int64)
+    end = np.roll(triangles[inside], -1, axis=1).ravel().astype(np.int64)
     label = np.repeat(patch[inside], 3)
     stride = int(triangles.max(initial=0)) + 1
     here, back = ((label * stride + a) * stride + b for a, b in ((start, end), (end, start)))
-    within = np.isin(here, back)
+    return start, end, label, np.isin(here, back)
+
+
+def _swallowing(triangles: np.ndarray, patch: np.ndarray, fixed: np.ndarray) -> np.ndarray:
+    """The patches that have a fixed edge between two of their elements, or one of its vertices amid them."""
+    start, end, label, within = _half_edges(triangles, patch)
+    stride = int(triangles.max(initial=0)) + 1
     edges = label[within & among(np.column_stack([start, end]), fixed)]
     at = label * stride + start
     on_outline = np.isin(at, np.concatenate([at[~within], (label * stride + end)[~within]]))
@@ -111,14 +118,9 @@ def _contours_of(triangles: np.ndarray, patch: np.ndarray) -> tuple[np.ndarray, 
     Unfit ones are dropped: a patch is fit if its boundary is one cycle that visits no vertex twice and has at most 16
     edges.
     """
-    inside = np.flatnonzero(patch >= 0)
-    start = triangles[inside].ravel().astype(np.int64)
-    end = np.roll(triangles[inside], -1, axis=1).ravel().astype(np.int64)
-    label = np.repeat(patch[inside], 3)
+    start, end, label, within = _half_edges(triangles, patch)
     stride = int(triangles.max(initial=0)) + 1
-    here, back = ((label * stride + a) * stride + b for a, b in ((start, end), (end, start)))
-    outline = ~np.isin(here, back)
-    label, start, end = label[outline], start[outline], end[outline]
+    label, start, end = label[~within], start[~within], end[~within]
     order = np.lexsort((start, label))
     label, start, end = label[order], start[order], end[order]
     numbers, first, count = np.unique(label, return_index=True, return_counts=True)

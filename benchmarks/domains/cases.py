@@ -11,9 +11,10 @@ from matplotlib.font_manager import FontProperties
 from matplotlib.textpath import TextPath
 
 import tessera
+from tessera.budget import MOST_TRIANGLES
 from tessera.contour import clean_domains
 from tessera.gradation import prepare
-from tessera.sizing import checked_limits
+from tessera.settings import Settings
 
 from . import outlines
 
@@ -21,8 +22,6 @@ FONT = "DejaVuSans.ttf"
 UNIFORM, THIN = "MSB8g@", "kW7&RQ"  # glyphs meshed at one length, and by their thickness
 EM = 100.0
 EVEN = "Ireland", "New Guinea", "Baffin Island"  # coasts that are meshed at one length
-GRADATION, CORNER_ANGLE = 1.3, 32.0  # those of `tessera.mesh`
-_MOST_TRIANGLES = 5_000_000
 
 
 @dataclass(frozen=True)
@@ -124,11 +123,10 @@ def islands() -> list[Case]:
 
 def target_of(case: Case) -> float | Callable[[np.ndarray], np.ndarray]:
     """The sizing function that the case's mesh follows, limited and graded: a length, or (n, 2) -> (n,)."""
-    sizing = case.options.get("sizing")
+    sizing, limits = Settings(**case.options).checked(case.edge_length)
     if sizing is None:
         return case.edge_length
-    limits = checked_limits(case.edge_length, case.options.get("min_edge_length"), GRADATION, CORNER_ANGLE)
-    target, errors = prepare({0: clean_domains([case.loops])[0]}, sizing, limits, _MOST_TRIANGLES)
+    target, errors = prepare({0: clean_domains([case.loops])[0]}, sizing, limits, MOST_TRIANGLES)
     if errors:
         raise errors[0]
     return lambda points: target(points, np.zeros(len(points), dtype=np.int64))

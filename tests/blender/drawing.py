@@ -1,4 +1,4 @@
-"""Objects for the tests, linked into the scene and selected."""
+"""Objects for the tests, linked into the scene and selected, and measures of their meshes."""
 
 import bpy
 import numpy as np
@@ -85,3 +85,19 @@ def _link(obj):
     bpy.context.scene.collection.objects.link(obj)
     select(obj)
     return obj
+
+
+def border(tris):
+    """The edges of exactly one triangle, (k, 2)."""
+    edges = np.sort(np.concatenate([tris[:, [0, 1]], tris[:, [1, 2]], tris[:, [2, 0]]]), axis=1)
+    unique, count = np.unique(edges, axis=0, return_counts=True)
+    assert count.max() <= 2
+    return unique[count == 1]
+
+
+def distance_to(polygon, points):
+    """How far each point is from a closed polyline; both in any dimension."""
+    a, b = polygon, np.roll(polygon, -1, axis=0)
+    along = np.einsum("pkd,kd->pk", points[:, None] - a, b - a) / np.sum((b - a) ** 2, axis=1)
+    nearest = a + np.clip(along, 0, 1)[..., None] * (b - a)
+    return np.linalg.norm(points[:, None] - nearest, axis=2).min(axis=1)

@@ -8,7 +8,20 @@ import pytest
 from mathutils import Euler, Matrix
 
 from addon.tessera.quality import element_quality
-from tests.blender.drawing import SQUARE, circle, counts, poly_curve, select, star, text, triangles, vertices, world
+from tests.blender.drawing import (
+    SQUARE,
+    border,
+    circle,
+    counts,
+    distance_to,
+    poly_curve,
+    select,
+    star,
+    text,
+    triangles,
+    vertices,
+    world,
+)
 
 
 def run(**settings):
@@ -22,22 +35,6 @@ def area(points, tris):
     """Signed by each triangle's normal along +Z; the sum over the mesh."""
     a, b, c = (points[tris[:, i]] for i in range(3))
     return 0.5 * np.cross(b - a, c - a)[:, 2].sum()
-
-
-def border(tris):
-    """The edges of exactly one triangle, (k, 2)."""
-    edges = np.sort(np.concatenate([tris[:, [0, 1]], tris[:, [1, 2]], tris[:, [2, 0]]]), axis=1)
-    unique, count = np.unique(edges, axis=0, return_counts=True)
-    assert count.max() <= 2
-    return unique[count == 1]
-
-
-def distance_to(polygon, points):
-    """How far each point is from a closed polyline; both in any dimension."""
-    a, b = polygon, np.roll(polygon, -1, axis=0)
-    along = np.einsum("pkd,kd->pk", points[:, None] - a, b - a) / np.sum((b - a) ** 2, axis=1)
-    nearest = a + np.clip(along, 0, 1)[..., None] * (b - a)
-    return np.linalg.norm(points[:, None] - nearest, axis=2).min(axis=1)
 
 
 def flat(loop):

@@ -10,7 +10,18 @@ from mathutils import Euler, Matrix
 
 from addon.blender.writing import write_joined, write_mesh
 from addon.tessera.quality import element_quality
-from tests.blender.drawing import SQUARE, circle, poly_curve, star, text, triangles, vertices, world
+from tests.blender.drawing import (
+    SQUARE,
+    border,
+    circle,
+    distance_to,
+    poly_curve,
+    star,
+    text,
+    triangles,
+    vertices,
+    world,
+)
 from tests.blender.sources import grease_pencil, hair_curves, mesh_object, meshed, read
 
 
@@ -19,20 +30,6 @@ def write(obj, edge_length=None):
     bpy.context.view_layer.update()
     assert not made.data.validate(verbose=True)
     return made
-
-
-def border(tris):
-    edges = np.sort(np.concatenate([tris[:, [0, 1]], tris[:, [1, 2]], tris[:, [2, 0]]]), axis=1)
-    unique, count = np.unique(edges, axis=0, return_counts=True)
-    assert count.max() <= 2
-    return unique[count == 1]
-
-
-def distance_to(polygon, points):
-    a, b = polygon, np.roll(polygon, -1, axis=0)
-    along = np.einsum("pkd,kd->pk", points[:, None] - a, b - a) / np.sum((b - a) ** 2, axis=1)
-    nearest = a + np.clip(along, 0, 1)[..., None] * (b - a)
-    return np.linalg.norm(points[:, None] - nearest, axis=2).min(axis=1)
 
 
 def corner_uvs(obj):
