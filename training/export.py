@@ -26,8 +26,8 @@ INPUTS = {
     "nn3": ["contour", "n_contour", "inner", "n_inner", "entries"],
 }
 AXES = {
-    "ring": {0: "batch", 1: "wrapped"},
-    "share": {0: "batch", 1: "edges"},
+    "ring": {1: "wrapped", 2: "batch"},
+    "share": {0: "edges", 1: "batch"},
     "contour": {0: "batch", 1: "edges"},
     "n_contour": {0: "batch"},
     "n_inner": {0: "batch"},
@@ -53,8 +53,8 @@ def sample(rng: np.random.Generator, batch: int, edges: int, vertices: int) -> d
     )
     entries = np.unique(np.stack([row, facet, vertex]), axis=1)
     return {
-        "ring": torch.tensor(np.concatenate([contour[:, -1:], contour, contour[:, :1]], axis=1), dtype=torch.float32),
-        "share": torch.full((batch, edges, 1), 1 / edges),
+        "ring": torch.tensor(np.concatenate([contour[:, -1:], contour, contour[:, :1]], axis=1).T, dtype=torch.float32),
+        "share": torch.full((edges, batch), 1 / edges),
         "contour": torch.tensor(contour, dtype=torch.float32),
         "n_contour": n_contour,
         "n_inner": n_inner,

@@ -110,7 +110,7 @@ class Moves(nn.Module):
 
 
 class Star(nn.Module):
-    """NN2 where N_I is 1 and the contour a ring of neighbours: the place of the vertex, (B, 2).
+    """NN2 where N_I is 1 and the contour a ring of neighbours: the place of the vertex, (2, B).
 
     A mean of the ring's vertices, weighed by what each has around it, so that the place turns, moves and grows with the
     ring. It is asked for every vertex of a large mesh, again and again, so it is small.
@@ -123,31 +123,40 @@ class Star(nn.Module):
         self.weight = nn.Linear(width, 1)
 
     def forward(self, ring: Tensor, share: Tensor) -> Tensor:
-        """ring: (B, N + 2, 2), counter-clockwise, the last vertex before the first and the first after the last.
+        """ring: (2, N + 2, B), counter-clockwise, the last vertex before the first and the first after the last.
 
-        share: (B, N, 1), 1 over their number for real vertices, 0 for padding. Returns (B, 2).
+        share: (N, B), 1 over their number for real vertices, 0 for padding. Returns (2, B). Rings are the last axis:
+        there are many of them.
         """
-        here = ring[:, 1:-1]
-        centre = (here * share).sum(1, keepdim=True)
+        centre = (ring[:, 1:-1] * share).sum(1, keepdim=True)
         at = ring - centre
         here = at[:, 1:-1]
-        size = torch.sqrt(((here * here).sum(-1, keepdim=True) * share).sum(1, keepdim=True))
+        size = torch.sqrt(((here[0] * here[0] + here[1] * here[1]) * share).sum(0))
         at = at / size
-        x = torch.relu(self.first(star_features(at)))
-        x = torch.cat([x, (x * share).sum(1, keepdim=True).expand_as(x)], -1)
-        weight = self.weight(torch.relu(self.second(x)))
-        return (centre + size * (weight * share * at[:, 1:-1]).sum(1, keepdim=True)).squeeze(1)
+        x = torch.relu(self.first.weight @ star_features(at) + self.first.bias.unsqueeze(1))
+        # The mean of the ring goes through its part of the second layer once.
+        each, mean = self.second.weight.split(self.first.out_features, 1)
+        x = x.reshape(x.shape[0], *share.shape)
+        whole = mean @ (x * share).sum(1) + self.second.bias.unsqueeze(1)
+        x = torch.relu((each @ x.flatten(1)).reshape(x.shape) + whole.unsqueeze(1))
+        weight = (self.weight.weight @ x.flatten(1) + self.weight.bias).reshape(share.shape)
+        return centre[:, 0] + size * (weight * share * at[:, 1:-1]).sum(1)
 
 
 def star_features(ring: Tensor) -> Tensor:
-    """(B, N, 9) squared lengths and products of each of a ring's vertices, (B, N + 2, 2), and of the two beside it."""
+    """(9, N B) squared lengths and products of each of a ring's vertices, (2, N + 2, B), and of the two beside it."""
     before, here, after = ring[:, :-2], ring[:, 1:-1], ring[:, 2:]
-    x, y = here[..., :1], here[..., 1:]
-    crosses = [x * after[..., 1:] - y * after[..., :1], before[..., :1] * y - before[..., 1:] * x]
-    dots = [(here * other).sum(-1, keepdim=True) for other in (here, after, before)]
-    sides = [((here - other) ** 2).sum(-1, keepdim=True) for other in (after, before)]
-    squares = [(other * other).sum(-1, keepdim=True) for other in (after, before)]
-    return torch.cat(crosses + dots + sides + squares, -1)
+
+    def dot(a: Tensor, b: Tensor) -> Tensor:
+        return a[0] * b[0] + a[1] * b[1]
+
+    def cross(a: Tensor, b: Tensor) -> Tensor:
+        return a[0] * b[1] - a[1] * b[0]
+
+    products = [cross(here, after), cross(before, here), dot(here, here), dot(here, after), dot(here, before)]
+    products += [dot(here - other, here - other) for other in (after, before)]
+    products += [dot(other, other) for other in (after, before)]
+    return torch.stack(products).flatten(1)
 
 
 class NN3(nn.Module):

@@ -101,7 +101,7 @@ def recording() -> Iterator[Record]:
 
 
 def _recorded_cells(call: Callable, kind: str, found: Record) -> Callable:
-    def mesh_cells(points, cells, edge_length, watch, more=None):
+    def mesh_cells(points, cells, edge_length, watch, more=(0,)):
         contour, n = _padded(points[cells]), (cells >= 0).sum(axis=1)
         found.contours.append(Pool(contour, n, edge_length, np.full(len(n), KINDS.index(kind), dtype=np.int8)))
         return call(points, cells, edge_length, watch, more)

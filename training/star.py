@@ -43,8 +43,8 @@ def rings(rng: np.random.Generator, count: int, size: int) -> np.ndarray:
 
 def wrapped(ring: Tensor) -> tuple[Tensor, Tensor]:
     """Rings (B, N, 2) as the network takes them, and the share of each vertex."""
-    share = torch.full((len(ring), ring.shape[1], 1), 1 / ring.shape[1])
-    return torch.cat([ring[:, -1:], ring, ring[:, :1]], 1), share
+    share = torch.full((ring.shape[1], len(ring)), 1 / ring.shape[1])
+    return torch.cat([ring[:, -1:], ring, ring[:, :1]], 1).permute(2, 1, 0), share
 
 
 def energy(ring: Tensor, place: Tensor) -> Tensor:
@@ -71,7 +71,7 @@ def main() -> None:
     folder = configuration.ROOT / "runs"
     folder.mkdir(exist_ok=True)
     held = np.random.default_rng((settings["seed"], 1))
-    held_out = [(share, torch.tensor(rings(held, 2000, size))) for size, share in zip(SIZES, SHARES, strict=True)]
+    held_out = [torch.tensor(rings(held, 2000, size)) for size in SIZES]
     losses, start = [], time.monotonic()
     with (folder / "nn2_star.csv").open("w", newline="") as file:
         for step in range(settings["steps"]):
@@ -79,7 +79,7 @@ def main() -> None:
             ring = torch.tensor(rings(rng, settings["batch"], rng.choice(SIZES, p=SHARES)))
             for group in optimiser.param_groups:
                 group["lr"] = rate_at(step, settings["steps"], settings["rate"])
-            loss = energy(ring, net(*wrapped(ring))).mean()
+            loss = energy(ring, net(*wrapped(ring)).T).mean()
             optimiser.zero_grad(set_to_none=True)
             loss.backward()
             torch.nn.utils.clip_grad_norm_(net.parameters(), 1.0)
@@ -91,7 +91,8 @@ def main() -> None:
                     mean.lerp_(now, 1 - decay)
             if (step + 1) % settings["report"] == 0:
                 with torch.no_grad():
-                    value = sum(float(share * energy(ring, average(*wrapped(ring))).mean()) for share, ring in held_out)
+                    found = [energy(ring, average(*wrapped(ring)).T).mean() for ring in held_out]
+                    value = float(SHARES @ np.array(found))
                 row = [step + 1, float(np.mean(losses[-settings["report"] :])), value]
                 csv.writer(file).writerow(row)
                 print(

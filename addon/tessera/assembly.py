@@ -17,16 +17,18 @@ def mesh_cells(
     cells: np.ndarray,
     edge_length: np.ndarray,
     watch: Stopwatch,
-    more: np.ndarray | None = None,
+    more: tuple[int, ...] = (0,),
 ) -> Steps[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
     """Put every cell through the scheme.
 
     points: (p, 2); cells: (c, N) int, counter-clockwise vertex numbers, padded with -1, 3 to 16 each; edge_length:
-    (c,); more: (c,) inner vertices more than NN1 asks for. Returns vertices (n, 2), the points first and then the inner
-    vertices; triangles (m, 3) int64; the cell of each triangle (m,); fallbacks of each cell (c,).
+    (c,); more: as `contours_in_steps` takes it, the c meshes of which are several times as many then. Returns vertices
+    (n, 2), the points first and then the inner vertices; triangles (m, 3) int64; the number of each triangle's mesh
+    (m,); fallbacks of each mesh (c,).
     """
     n_contour = (cells >= 0).sum(axis=1)
     meshes = yield from contours_in_steps(points[np.maximum(cells, 0)], n_contour, edge_length, watch, more=more)
+    n_contour, cells = np.repeat(n_contour, len(more)), np.repeat(cells, len(more), axis=0)
     row, k = np.nonzero(np.arange(meshes.inner.shape[1]) < meshes.n_inner[:, None])
     width = int((n_contour + meshes.n_inner).max(initial=3))
     number = np.zeros((len(cells), width), dtype=np.int64)

@@ -7,22 +7,21 @@ import numpy as np
 
 def sides(triangles: np.ndarray) -> np.ndarray:
     """The three edges of each of the triangles (m, 3), smaller vertex first: (3 m, 2) int64."""
-    return np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1).astype(np.int64)
+    start = triangles.astype(np.int64)
+    end = np.roll(start, -1, axis=1)
+    return np.stack([np.minimum(start, end).ravel(), np.maximum(start, end).ravel()], axis=1)
 
 
 def unique_edges(triangles: np.ndarray) -> np.ndarray:
     """Each edge of triangles (m, 3) once, its smaller vertex first: (e, 2)."""
-    edges, n = sides(triangles), int(triangles.max(initial=0)) + 1
-    return np.stack(np.divmod(np.unique(edges[:, 0] * n + edges[:, 1]), n), axis=1)
+    return inner_edges(triangles)[0]
 
 
 def inner_edges(triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The edges (e, 2), smaller vertex first, and whether each lies between two triangles (e,)."""
-    n = int(triangles.max(initial=0)) + 1
-    edges = unique_edges(triangles)
-    a, b = sides(triangles).T
-    count = np.bincount(np.searchsorted(edges[:, 0] * n + edges[:, 1], a * n + b), minlength=len(edges))
-    return edges, count == 2
+    edges, n = sides(triangles), int(triangles.max(initial=0)) + 1
+    keys, count = np.unique(edges[:, 0] * n + edges[:, 1], return_counts=True)
+    return np.stack(np.divmod(keys, n), axis=1), count == 2
 
 
 def off_boundary(triangles: np.ndarray, n_vertices: int, fixed: np.ndarray | None = None) -> np.ndarray:

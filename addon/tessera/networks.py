@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,7 +25,7 @@ FOLDER = Path(__file__).resolve().parents[2] / "onnx_models"
 
 # Sizes that contours, inner vertices and grids are padded to.
 _PADDED_EDGES = np.array([4, 8, 12, 16, 24, 32, 48, 64])
-_PADDED_INNER = np.array([1, 2, 4, 8, 12, 16, 24, 32])
+_PADDED_INNER = np.array([2, 4, 8, 12, 16, 24, 32])
 _PADDED_GRID = np.array([16, 32, 48, 64, 96, 128, 192, 256, 400, 48 * 48])
 _MOST = 1e9  # inner vertices that NN1 may ask for
 _KNOWN_TARGETS = 0.25, 20.0  # scaled target edge lengths that NN1 is asked about; it has learnt from 0.25 on
@@ -135,20 +136,26 @@ def move_inner_vertices(
 
 
 def centre_stars(ring: np.ndarray, n_ring: np.ndarray) -> np.ndarray:
-    """NN2 of stars: the places (S, 2) of the only inner vertices of rings that are about as large as 1.
+    """NN2 of stars: the places (2, S) of the only inner vertices of rings that are about as large as 1.
 
-    ring: (S, R + 2, 2), counter-clockwise, the last of each one's n_ring (S,) vertices before the first, the first
+    ring: (2, R + 2, S), counter-clockwise, the last of each one's n_ring (S,) vertices before the first, the first
     after the last, and in the padding.
     """
-    share = np.where(np.arange(ring.shape[1] - 2) < n_ring[:, None], 1 / n_ring[:, None], 0)
-    ring, share = ring.astype(np.float32), share.astype(np.float32)[..., None]
     # At least two in a call: onnxruntime adds up in another order where there is one.
-    rows = np.arange(max(2, len(ring))) % len(ring)
+    rows = np.arange(max(2, len(n_ring))) % len(n_ring)
+    share = np.where(np.arange(ring.shape[1] - 2)[:, None] < n_ring, 1 / n_ring, 0).astype(np.float32)[:, rows]
+    ring = ring.astype(np.float32)[..., rows]
     found = [
-        session("nn2_star").run(None, {"ring": ring[part], "share": share[part]})[0]
-        for part in np.array_split(rows, -(-len(rows) * ring.shape[1] // _CALL_SIZE))
+        session("nn2_star").run(None, {"ring": np.ascontiguousarray(ring[..., part]), "share": share[:, part]})[0]
+        for part in _pieces(len(rows), ring.shape[1])
     ]
-    return np.concatenate(found)[: len(ring)].astype(np.float64)
+    return np.concatenate(found, axis=1)[:, : len(n_ring)].astype(np.float64)
+
+
+def _pieces(count: int, size: int) -> list[slice]:
+    """Slices of `count` rows of so many points each, a call's worth at a time; two rows at the least."""
+    ends = np.linspace(0, count, 1 + -(-count * size // _CALL_SIZE)).astype(np.int64)
+    return [slice(start, end) for start, end in pairwise(ends.tolist())]
 
 
 def rate_connections(

@@ -19,6 +19,7 @@ from .contour import neighbours
 from .crossings import crossing_pairs
 from .edges import among, inner_edges, off_boundary, sides
 from .finer import Arcs
+from .halving import find_halved, four_elements
 from .quality import element_quality
 from .relaxation import relax
 from .scheme import LARGEST_CONTOUR
@@ -98,16 +99,17 @@ def refine(
         cells = _sub_contours(len(vertices), triangles, edges, segments)
         split = (cells[:, 3:] >= 0).any(axis=1)
         if arcs is not None:
-            arcs, bad = None, _unfit(points, cells, split)
+            arcs, bad = None, _unfit(points, cells, np.append(number, places))
             failed = np.unique(domain[parent[bad]])
             split &= ~np.isin(domain[parent], failed)
-        contours = cells[split, :LARGEST_CONTOUR]
+        halved = split & find_halved(points, cells, len(vertices))
+        contours, rest = cells[split & ~halved, :LARGEST_CONTOUR], np.flatnonzero(split & ~halved)
         meshing = mesh_cells(points, contours, mean_edge_lengths(points, contours), watch)
         vertices, new, owner, fell = yield from within(meshing, start, end)
         number = np.concatenate([number, places, np.full(len(vertices) - len(points), -1)])
-        np.add.at(fallbacks, parent[split], fell)
-        parent = np.concatenate([parent[~split], parent[split][owner]])
-        triangles = np.concatenate([triangles[~split], new])
+        np.add.at(fallbacks, parent[rest], fell)
+        triangles = np.concatenate([triangles[~split], four_elements(cells[halved]), new])
+        parent = np.concatenate([parent[~split], np.repeat(parent[halved], 4), parent[rest][owner]])
     return Refined(vertices, triangles, parent, fallbacks, number, failed)
 
 
@@ -128,12 +130,12 @@ def _with_arcs(
     return segments, all_points, places
 
 
-def _unfit(points: np.ndarray, cells: np.ndarray, split: np.ndarray) -> np.ndarray:
-    """Rows of cells (m, N) that the scheme cannot mesh, of those that are split.
+def _unfit(points: np.ndarray, cells: np.ndarray, number: np.ndarray) -> np.ndarray:
+    """Rows of cells (m, N) that the scheme cannot mesh: of over 16 vertices, or no simple counter-clockwise polygons.
 
-    They have more than 16 vertices, or are no simple counter-clockwise polygons.
+    number: (p,) of the boundary's points, or -1; without two of them a cell is the triangle that it was.
     """
-    rows = np.flatnonzero(split)
+    rows = np.flatnonzero(((number[cells] >= 0) & (cells >= 0)).sum(axis=1) > 1)
     count = (cells[rows] >= 0).sum(axis=1)
     corners, row = cells[rows][cells[rows] >= 0], np.repeat(rows, count)
     _, after = neighbours(count)
@@ -161,9 +163,7 @@ def _segments(
 
 def _beside_slivers(vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray) -> np.ndarray:
     """(e,) which edges belong to an element that is too flat to be split."""
-    a, b = sides(triangles[element_quality(vertices, triangles) < _SLIVER]).T
-    stride = int(edges.max()) + 1
-    return np.isin(edges[:, 0] * stride + edges[:, 1], a * stride + b)
+    return among(edges, sides(triangles[element_quality(vertices, triangles) < _SLIVER]))
 
 
 def _inserted(ends: np.ndarray, segments: np.ndarray, wanted: np.ndarray) -> np.ndarray:

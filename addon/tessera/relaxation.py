@@ -79,23 +79,23 @@ def _pass(vertices: np.ndarray, sets: list[Stars], disturbed: np.ndarray) -> np.
 
 def _better_places(vertices: np.ndarray, stars: Stars, size: int) -> tuple[np.ndarray, np.ndarray]:
     """New places (S, 2) of the stars' centres, and whether each is better than the old one; size: to pad rings to."""
-    old, n = vertices[stars.centre], stars.n_ring
-    # The last vertex before the first, and the first in all that is left.
-    ring = np.repeat(stars.ring[:, :1], size + 2, axis=1)
+    old, n = vertices[stars.centre].T, stars.n_ring
+    # The last vertex before the first, and the first in all that is left. Rings are the last axis: they are many.
+    ring = np.tile(stars.ring[:, 0], (size + 2, 1))
     width = min(size, stars.ring.shape[1])
-    ring[:, 1 : width + 1], ring[:, 0] = stars.ring[:, :width], stars.ring[np.arange(len(n)), n - 1]
+    ring[1 : width + 1], ring[0] = stars.ring[:, :width].T, stars.ring[np.arange(len(n)), n - 1]
     # Beside the old place and the size, so that no coordinate is too large or too small for single precision.
-    around = vertices[ring] - old[:, None]
-    scale = np.abs(around).max(axis=(1, 2))[:, None]
-    around /= scale[:, None]
+    around = np.stack([vertices[:, axis][ring] - old[axis] for axis in (0, 1)])
+    scale = np.abs(around).max(axis=(0, 1))
+    around /= scale
     move = networks.centre_stars(around, n)
     before, after = _star_quality(around, n), _star_quality(around - move[:, None], n)
     better = after.sum(axis=0) > before.sum(axis=0) + _GAIN
-    return old + scale * move, better & (after[0] > np.minimum(before[0], 0.3))
+    return (old + scale * move).T, better & (after[0] > np.minimum(before[0], 0.3))
 
 
 def _star_quality(around: np.ndarray, n_ring: np.ndarray) -> np.ndarray:
-    """(2, S) worst and mean quality of the elements that each centre forms with the wrapped ring around it."""
-    real = np.arange(around.shape[1] - 2) < n_ring[:, None]
+    """(2, S) worst and mean quality of the elements that centres form with the wrapped rings (2, R + 2, S) around."""
+    real = np.arange(around.shape[1] - 2)[:, None] < n_ring
     quality = quality_of_sides(around[:, 1:-1], around[:, 2:])
-    return np.stack([np.where(real, quality, 1).min(axis=1), total_in_turn(np.where(real, quality, 0)) / n_ring])
+    return np.stack([np.where(real, quality, 1).min(axis=0), total_in_turn(np.where(real, quality, 0)) / n_ring])

@@ -16,14 +16,15 @@ from .edges import off_boundary
 from .patches import find_patches
 from .quality import element_quality
 from .relaxation import relax
-from .steps import Steps, within
+from .steps import Progress, Steps, within
 from .stopwatch import Stopwatch
 
 TURNS = 4
 POOR = 0.93  # elements of less quality are worth a try
-_MORE = np.array([0, -1, 1])  # inner vertices than NN1 asks for
-# What a patch is worth: its worst quality, and so many times its mean; a new one has to be better by the gain.
-_MEAN, _GAIN = 3, 6e-3
+_MORE = 0, -1, 1  # inner vertices than NN1 asks for
+# What a patch is worth: its worst quality, and so many times its mean; a new one has to be better by the gain. Of those
+# that are worth as much as `_GOOD` already, one in ten would get better, and by little.
+_MEAN, _GAIN, _GOOD = 3, 6e-3, 3.8
 _RELAXED = 0.3  # share of the work that is done after the first relaxation
 
 
@@ -52,6 +53,9 @@ def improve(
             break
         for number in (0, 1):
             tried[number][triangles[(patch >= 0) & (kind[patch] == number)]] = True
+        contours, patch = _without_good(contours, patch, quality)
+        if not len(contours):
+            continue
         start, end = (_RELAXED + (1 - _RELAXED) * (turn + n) / TURNS for n in (0, 1))
         remesh = _remesh(vertices, triangles, domain, quality, contours, patch, watch)
         found = yield from within(remesh, start, end)
@@ -64,7 +68,16 @@ def improve(
         vertices = yield from within(relaxation, end, end)
         disturbed |= (vertices != found.vertices).any(axis=1)
         tried = tuple(np.append(one, ~disturbed[len(one) :]) & ~disturbed for one in tried)
+    yield Progress("relaxation", 1.0)
     return vertices, triangles, domain, fallbacks
+
+
+def _without_good(contours: np.ndarray, patch: np.ndarray, quality: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The contours of patches (c, N), and each element's patch (m,) or -1, without those that are good enough."""
+    taken = np.flatnonzero(patch >= 0)
+    poor = _worth(quality[taken], patch[taken], len(contours)) < _GOOD
+    anew = np.append(np.where(poor, np.cumsum(poor) - 1, -1), -1)
+    return contours[poor], anew[patch]
 
 
 @dataclass(frozen=True)
@@ -90,16 +103,13 @@ def _remesh(
 ) -> Steps[_Remeshed]:
     """Mesh patches (c, N) again, once; patch: (m,) the one that each element is in, or -1."""
     n, taken = len(contours), np.flatnonzero(patch >= 0)
-    cells = np.tile(contours, (len(_MORE), 1))
-    more = np.repeat(_MORE, n)
-    lengths = mean_edge_lengths(vertices, cells)
-    points, new, cell, fell = yield from mesh_cells(vertices, cells, lengths, watch, more)
+    lengths = mean_edge_lengths(vertices, contours)
+    points, new, made, fell = yield from mesh_cells(vertices, contours, lengths, watch, _MORE)
     before = _worth(quality[taken], patch[taken], n)
-    after = _worth(element_quality(points, new), cell, len(cells)).reshape(len(_MORE), n)
-    best = after.argmax(axis=0)
-    better = np.flatnonzero(after.max(axis=0) > before + _GAIN)
-    chosen = best[better] * n + better
-    come = np.isin(cell, chosen)
+    after = _worth(element_quality(points, new), made, n * len(_MORE)).reshape(n, -1)
+    better = np.flatnonzero(after.max(axis=1) > before + _GAIN)
+    chosen = better * len(_MORE) + after[better].argmax(axis=1)
+    come = np.isin(made, chosen)
     home = np.zeros(n, dtype=domain.dtype)
     home[patch[taken]] = domain[taken]
     stay = ~np.isin(patch, better)
@@ -107,7 +117,7 @@ def _remesh(
     return _Remeshed(
         points,
         np.concatenate([triangles[stay], new]),
-        np.concatenate([domain[stay], home[cell[come] % n]]),
+        np.concatenate([domain[stay], home[made[come] // len(_MORE)]]),
         new.ravel(),
         home[better],
         fell[chosen],

@@ -50,23 +50,22 @@ def contours_in_steps(
     watch: Stopwatch,
     *,
     flips: bool = False,
-    more: np.ndarray | None = None,
+    more: tuple[int, ...] = (0,),
     roles: Roles = SHIPPED,
 ) -> Steps[ContourMeshes]:
     """Mesh contours, each at its own target edge length.
 
     contours: (B, N, 2) float64, simple and counter-clockwise, n_contour (B,) vertices each, 3 to 16, then padding of
-    any value; edge_length: (B,); more: (B,) inner vertices more, or less, than NN1 asks for; roles: the networks that
-    are asked. A large batch goes through in pieces, so that memory grows by no more than the meshes.
+    any value; edge_length: (B,); more: each contour is meshed with so many inner vertices more, or less, than NN1 asks
+    for, once for each of these numbers, one behind the other; roles: the networks that are asked. A large batch goes
+    through in pieces, so that memory grows by no more than the meshes.
     """
-    if more is None:
-        more = np.zeros(len(contours), dtype=np.int64)
-    pieces = []
-    for first in range(0, max(1, len(contours)), _PIECE):
-        rows = slice(first, first + _PIECE)
+    pieces, size = [], max(1, _PIECE // len(more))
+    for first in range(0, max(1, len(contours)), size):
+        rows = slice(first, first + size)
         part = contours[rows], n_contour[rows], edge_length[rows]
-        pieces.append(_mesh_piece(*part, watch, flips, more[rows], roles))
-        yield Progress("networks", min(1.0, (first + _PIECE) / max(1, len(contours))))
+        pieces.append(_mesh_piece(*part, watch, flips, more, roles))
+        yield Progress("networks", min(1.0, (first + size) / max(1, len(contours))))
     return pieces[0] if len(pieces) == 1 else _join(pieces)
 
 
@@ -76,7 +75,7 @@ def _mesh_piece(
     edge_length: np.ndarray,
     watch: Stopwatch,
     flips: bool,
-    more: np.ndarray,
+    more: tuple[int, ...],
     roles: Roles,
 ) -> ContourMeshes:
     """`contours_in_steps` for all at a time."""
@@ -88,7 +87,12 @@ def _mesh_piece(
         transformed = transformation.apply(contours)
         l_s = edge_length * transformation.scale
     with watch("NN1"):
-        wanted = np.maximum(roles.count(transformed, n_contour, l_s) + more, 0)
+        wanted = roles.count(transformed, n_contour, l_s)
+    if more != (0,):
+        rows = np.repeat(np.arange(len(contours)), len(more))
+        wanted = np.maximum(wanted[rows] + np.tile(more, len(contours)), 0)
+        contours, n_contour, transformed, l_s = (of[rows] for of in (contours, n_contour, transformed, l_s))
+        transformation = transformation.rows(rows)
     places, n_inner = roles.place(transformed, n_contour, np.minimum(wanted, MOST_INNER), l_s, watch)
     inner = transformation.invert(places)
     with watch("triangulation"):

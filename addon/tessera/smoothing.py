@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from .cavity import next_vertices
 from .edges import off_boundary
 from .quality import quality_of_sides
 from .stars import Stars, find_independent_stars, total_in_turn
@@ -70,26 +69,26 @@ def _downhill(vertices: np.ndarray, stars: Stars) -> np.ndarray:
 
     Where a star's worst element is poor, it gets no poorer, and none gets so flat that its sign is not sure.
     """
-    ring, centre = vertices[stars.ring], vertices[stars.centre]
-    real = np.arange(ring.shape[1]) < stars.n_ring[:, None]
-    size = total_in_turn(np.where(real, np.hypot(*np.moveaxis(ring - centre[:, None], 2, 0)), 0)) / stars.n_ring
+    # Coordinates first, then elements around each star, then stars: those are many.
+    centre, n = vertices[stars.centre].T, stars.n_ring
+    ring = np.stack([vertices[:, axis][stars.ring.T] for axis in (0, 1)])
+    real = np.arange(ring.shape[1])[:, None] < n
+    size = total_in_turn(np.where(real, np.hypot(*(ring - centre[:, None])), 0)) / n
     # Around the centre and beside the size, so that no coordinate is too large or too small.
-    start = (ring - centre[:, None]) / size[:, None, None]
-    end = next_vertices(start, stars.n_ring)
+    start = (ring - centre[:, None]) / size
+    end = np.where(np.arange(1, ring.shape[1] + 1)[:, None] < n, np.roll(start, -1, axis=1), start[:, :1])
     slope = _slope(start, end, real)
-    steepness = np.hypot(*slope.T)
-    direction = -slope * (size / np.where(steepness > 0, steepness, 1))[:, None]
-    places = np.concatenate([centre[:, None], centre[:, None] + _STEPS[:, None] * direction[:, None]], axis=1)
-    moved = (places - centre[:, None]) / size[:, None, None]
-    quality = np.where(
-        real[:, None], quality_of_sides(start[:, None] - moved[:, :, None], end[:, None] - moved[:, :, None]), 1
-    )
-    worst = quality.min(axis=2)
-    allowed = worst >= np.clip(worst[:, :1], _FLAT, _POOR)
-    allowed[:, 0] = True
-    energy = np.where(allowed, total_in_turn(_energy(quality) * real[:, None]), np.inf)
-    best = energy.argmin(axis=1)
-    return places[np.arange(len(places)), best]
+    steepness = np.hypot(*slope)
+    direction = -slope * (size / np.where(steepness > 0, steepness, 1))
+    places = centre[:, None] + np.append(0, _STEPS)[:, None] * direction[:, None]
+    moved = ((places - centre[:, None]) / size)[:, :, None]
+    quality = np.where(real, quality_of_sides(start[:, None] - moved, end[:, None] - moved), 1)
+    worst = quality.min(axis=1)
+    allowed = worst >= np.clip(worst[:1], _FLAT, _POOR)
+    allowed[0] = True
+    energy = np.where(allowed, total_in_turn(np.moveaxis(_energy(quality) * real, 1, 0)), np.inf)
+    best = energy.argmin(axis=0)
+    return places[:, best, np.arange(len(n))].T
 
 
 def _energy(quality: np.ndarray) -> np.ndarray:
@@ -98,12 +97,13 @@ def _energy(quality: np.ndarray) -> np.ndarray:
 
 
 def _slope(u: np.ndarray, v: np.ndarray, real: np.ndarray) -> np.ndarray:
-    """(S, 2) the derivative of each star's energy by its centre. u, v: (S, R, 2) from there to the ends of elements."""
-    squares = ((u * u).sum(-1) + (v * v).sum(-1) + ((u - v) ** 2).sum(-1))[..., None]
-    squares = np.maximum(squares, 1e-300)
-    double = (u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])[..., None]
-    by_area = np.stack([u[..., 1] - v[..., 1], v[..., 0] - u[..., 0]], axis=-1)
+    """(2, S) the derivative of each star's energy by its centre. u, v: (2, R, S) from there to the ends of elements."""
+    (ux, uy), (vx, vy) = u, v
+    # u² + v² + (u - v)²
+    squares = np.maximum(2 * (ux * ux + uy * uy + vx * vx + vy * vy - ux * vx - uy * vy), 1e-300)
+    double = ux * vy - uy * vx
+    by_area = np.stack([uy - vy, vx - ux])
     by_squares = -2 * (u + v)
     quality = 2 * np.sqrt(3) * double / squares
     change = 2 * np.sqrt(3) * (by_area * squares - double * by_squares) / squares**2
-    return total_in_turn(np.swapaxes(-8 * np.maximum(quality, _POOR) ** -9.0 * change * real[..., None], 1, 2))
+    return total_in_turn(np.moveaxis(-8 * np.maximum(quality, _POOR) ** -9.0 * change * real, 1, 0))

@@ -66,20 +66,22 @@ def independent_sets(stars: Stars, number: np.ndarray) -> list[np.ndarray]:
     rank = (number.astype(np.uint64) * np.uint64(11400714819323198485) >> np.uint64(1)).astype(np.int64)
     row_of = np.full(len(number), -1)
     row_of[stars.centre] = np.arange(len(stars.centre))
-    neighbour = row_of[stars.ring]
-    neighbour[np.arange(stars.ring.shape[1]) >= stars.n_ring[:, None]] = -1
-    own = rank[stars.centre]
-    left, sets = np.ones(len(stars.centre), dtype=bool), []
-    while left.any():
-        chosen, fits = np.zeros_like(left), left.copy()
-        while fits.any():
-            around = np.where((neighbour >= 0) & fits[neighbour], own[neighbour], -1).max(axis=1)
-            new = fits & (own > around)
-            chosen |= new
-            fits &= ~new
-            fits[neighbour[new][neighbour[new] >= 0]] = False
-        sets.append(np.flatnonzero(chosen))
-        left &= ~chosen
+    neighbour = row_of[stars.ring.T]
+    neighbour[np.arange(stars.ring.shape[1])[:, None] >= stars.n_ring] = -1
+    own, left, sets = rank[stars.centre], np.arange(len(stars.centre)), []
+    while len(left):
+        chosen, going = [], left
+        fits = np.zeros(len(own) + 1, dtype=bool)  # the last is what padding points to
+        fits[left] = True
+        while len(going):
+            near = neighbour[:, going]
+            new = going[own[going] > np.where(fits[near], own[near], -1).max(axis=0)]
+            chosen.append(new)
+            fits[new] = False
+            fits[neighbour[:, new]] = False
+            going = going[fits[going]]
+        sets.append(np.sort(np.concatenate(chosen)))
+        left = np.setdiff1d(left, sets[-1], assume_unique=True)
     return sets
 
 
@@ -95,5 +97,8 @@ def _numbers_by_domain(triangles: np.ndarray, domain: np.ndarray, n_vertices: in
 
 
 def total_in_turn(values: np.ndarray) -> np.ndarray:
-    """Sums over the last axis, one after the other, so that padding rings with zeros changes no last bit."""
-    return np.cumsum(values, axis=-1)[..., -1]
+    """Sums over the first axis, one after the other, so that padding rings with zeros changes no last bit."""
+    total = values[0]
+    for value in values[1:]:
+        total = total + value
+    return total

@@ -39,6 +39,10 @@ class Transformation:
         """(B,) float64, transformed length over original length (the paper's S)."""
         return np.abs(self.factor)
 
+    def rows(self, rows: np.ndarray) -> Transformation:
+        """Those of the chosen contours."""
+        return Transformation(self.centre[rows], self.factor[rows], self.first[rows])
+
     def apply(self, points: np.ndarray) -> np.ndarray:
         """Take (B, n, 2) points of each contour's plane to the transformed one."""
         return _as_points((_as_complex(points) - self.centre[:, None]) * self.factor[:, None])

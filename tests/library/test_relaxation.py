@@ -102,7 +102,7 @@ def test_no_refinement_where_none_is_needed():
 def test_the_quality_around_a_vertex_does_not_depend_on_the_padding():
     """To the last bit: whether a move is made must not hang on the widest ring of the batch."""
     rng = np.random.default_rng(3)
-    around = rng.normal(size=(200, 9, 2))
+    around = rng.normal(size=(2, 9, 200))
     n_ring = rng.integers(4, 8, 200)
     padded = np.concatenate([around, np.repeat(around[:, 1:2], 6, axis=1)], axis=1)
     np.testing.assert_array_equal(_star_quality(around, n_ring), _star_quality(padded, n_ring))

@@ -16,7 +16,7 @@ def wrapped(ring: np.ndarray, size: int = 8) -> np.ndarray:
 
 
 def places(ring: np.ndarray, size: int = 8) -> np.ndarray:
-    return centre_stars(wrapped(ring, size), np.full(len(ring), ring.shape[1]))
+    return centre_stars(wrapped(ring, size).T, np.full(len(ring), ring.shape[1])).T
 
 
 @pytest.mark.parametrize("n", [4, 5, 6, 7])
