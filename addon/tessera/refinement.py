@@ -151,7 +151,7 @@ def _segments(
 
     may_split: (e,) bool; domain: (e,).
     """
-    length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    length = np.hypot(*(ends[:, 1] - ends[:, 0]).T)
     segments, wanted = np.ones(len(ends), dtype=np.int64), np.ones((len(ends), len(_STATIONS)))
     rows = np.flatnonzero(may_split)
     rows = rows[length[rows] > _SURELY_ONE * sizing(ends[rows].mean(axis=1), domain[rows])]
@@ -187,17 +187,17 @@ def _sub_contours(n: int, triangles: np.ndarray, edges: np.ndarray, segments: np
     n: from which inserted vertices count; segments: (e,) how many each edge comes to.
     """
     first = np.cumsum(segments - 1) - (segments - 1)
-    most = max(MOST_SEGMENTS, int(segments.max()))
     stride = int(triangles.max()) + 1
     key = edges[:, 0] * stride + edges[:, 1]
-    cells = np.full((len(triangles), 3, most), -1, dtype=np.int64)
-    cells[:, :, 0] = triangles
-    for side in range(3):
-        a, b = triangles[:, side], triangles[:, (side + 1) % 3]
-        of = np.searchsorted(key, np.minimum(a, b) * stride + np.maximum(a, b))
-        for k in range(1, most):
-            here = np.where(a < b, k - 1, segments[of] - 1 - k)
-            cells[:, side, k] = np.where(k < segments[of], n + first[of] + here, -1)
-    cells = cells.reshape(len(triangles), -1)
-    order = np.argsort(cells < 0, axis=1, kind="stable")
-    return np.take_along_axis(cells, order, axis=1)
+    start, end = triangles.astype(np.int64), np.roll(triangles, -1, axis=1).astype(np.int64)
+    of = np.searchsorted(key, np.minimum(start, end) * stride + np.maximum(start, end))
+    count = segments[of]
+    place = np.cumsum(count, axis=1) - count
+    cells = np.full((len(triangles), max(3 * MOST_SEGMENTS, int(count.sum(axis=1).max()))), -1, dtype=np.int64)
+    np.put_along_axis(cells, place, start, axis=1)
+    for k in range(1, int(segments.max())):
+        row, side = np.nonzero(count > k)
+        ahead = start[row, side] < end[row, side]
+        along = np.where(ahead, k - 1, count[row, side] - 1 - k)
+        cells[row, place[row, side] + k] = n + first[of[row, side]] + along
+    return cells
