@@ -1,7 +1,8 @@
 """The lower envelope of cones: the smallest of value + slope · distance over many places, exact, without asking all.
 
-The places are points and segments, in a balanced tree of boxes. All questions go down the tree together, a level at a
-time; a box is left where even its nearest corner could give nothing smaller than what is known.
+The places are points and segments, in a balanced tree of boxes. Questions go down the tree in groups of near ones, all
+groups together, a level at a time; a box is left where even its nearest corner gives none of them anything smaller than
+what is known.
 """
 
 from __future__ import annotations
@@ -11,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 _LEAF = 8
-# Questions that go down the tree together: bounds the memory.
-_BLOCK = 1 << 15
+_GROUP = 8  # points that go down the tree as one
+# Groups that go down the tree together: bounds the memory.
+_BLOCK = 1 << 10
 # Rounding must not leave out a box, or the last bit would depend on the shape of the tree.
 _MARGIN = 1 - 1e-12
 
@@ -95,48 +97,71 @@ def lowest(cones: Cones | None, points: np.ndarray, domain: np.ndarray, most: np
 
     points: (n, 2); domain: (n,) int; most: (n,).
     """
-    lowest_yet = np.array(most, dtype=np.float64)
-    if cones is None:
-        return lowest_yet
-    for first in range(0, len(points), _BLOCK):
-        part = slice(first, first + _BLOCK)
-        lowest_yet[part] = _descend(cones, points[part], domain[part], lowest_yet[part])
-    return lowest_yet
+    found = np.array(most, dtype=np.float64)
+    if cones is None or not len(points):
+        return found
+    groups = _groups(points, domain)
+    for first in range(0, len(groups), _BLOCK):
+        rows = groups[first : first + _BLOCK]
+        found[rows] = _descend(cones, points[rows], domain[rows[:, 0]], found[rows])
+    return found
 
 
-def _descend(cones: Cones, points: np.ndarray, domain: np.ndarray, lowest_yet: np.ndarray) -> np.ndarray:
-    """`lowest` for one block; the pairs of a point and a node stay sorted by point."""
-    query, node = np.arange(len(points)), np.zeros(len(points), dtype=np.int64)
+def _groups(points: np.ndarray, domain: np.ndarray) -> np.ndarray:
+    """(G, `_GROUP`) rows of points near each other, of one domain; the last of a group again where it has fewer."""
+    low, extent = points.min(axis=0), np.ptp(points, axis=0)
+    cell = ((points - low) / np.where(extent > 0, extent, 1) * 65535).astype(np.uint64)
+    # Along a curve that fills the plane: the bits of x and y in turn.
+    for shift, mask in ((8, 0x00FF00FF), (4, 0x0F0F0F0F), (2, 0x33333333), (1, 0x55555555)):
+        cell = (cell | (cell << np.uint64(shift))) & np.uint64(mask)
+    order = np.lexsort((cell[:, 0] | (cell[:, 1] << np.uint64(1)), domain))
+    _, first, count = np.unique(domain[order], return_index=True, return_counts=True)
+    groups = -(-count // _GROUP)
+    of = np.repeat(np.arange(len(groups)), groups)
+    start = (np.arange(len(of)) - np.repeat(np.cumsum(groups) - groups, groups)) * _GROUP
+    return order[np.minimum(first[of, None] + start[:, None] + np.arange(_GROUP), (first + count - 1)[of, None])]
+
+
+def _descend(cones: Cones, points: np.ndarray, domain: np.ndarray, most: np.ndarray) -> np.ndarray:
+    """`lowest` (G, K) of groups of points (G, K, 2) of domains (G,); pairs of group and node stay sorted by group."""
+    left, right, limit = points.min(axis=1), points.max(axis=1), most.max(axis=1)
+    group, node = np.arange(len(points)), np.zeros(len(points), dtype=np.int64)
     for level, (low, high, value, slope, best) in enumerate(cones.levels):
         if level:
-            query, node = np.repeat(query, 2), np.repeat(2 * node, 2)
+            group, node = np.repeat(group, 2), np.repeat(2 * node, 2)
             node[1::2] += 1
-        x, z = points[query], domain[query]
-        away = np.maximum(np.maximum(low[node, :2] - x, x - high[node, :2]), 0)
+        away = np.maximum(np.maximum(low[node, :2] - right[group], left[group] - high[node, :2]), 0)
         bound = value[node] + slope[node] * np.hypot(away[:, 0], away[:, 1])
-        near = (z >= low[node, 2]) & (z <= high[node, 2]) & (_MARGIN * bound < lowest_yet[query])
-        query, node = query[near], node[near]
-        lowest_yet = _lower(lowest_yet, query, cones.places, best[node], points, domain)
-    place = (node[:, None] * _LEAF + np.arange(_LEAF)).ravel()
-    return _lower(lowest_yet, np.repeat(query, _LEAF), cones.places, place, points, domain)
-
-
-def _lower(lowest_yet, query, places: Places, place, points, domain) -> np.ndarray:
-    """The smallest numbers after these pairs of a point and a place, sorted by point, have had their say."""
-    if len(query) == 0:
-        return lowest_yet
-    start, along = places.start[place], places.end[place] - places.start[place]
-    offset = points[query] - start
-    squared = along[:, 0] ** 2 + along[:, 1] ** 2
-    dot = offset[:, 0] * along[:, 0] + offset[:, 1] * along[:, 1]
-    share = np.clip(dot / np.where(squared > 0, squared, 1), 0, 1)
-    away = np.hypot(offset[:, 0] - share * along[:, 0], offset[:, 1] - share * along[:, 1])
-    found = places.value[place] + places.slope[place] * away
-    found = np.where(places.domain[place] == domain[query], found, np.inf)
-    first = np.flatnonzero(np.diff(query, prepend=-1))
-    lowest_yet = lowest_yet.copy()
-    lowest_yet[query[first]] = np.minimum(lowest_yet[query[first]], np.minimum.reduceat(found, first))
+        there = (domain[group] >= low[node, 2]) & (domain[group] <= high[node, 2])
+        near = there & (_MARGIN * bound < limit[group])
+        group, node = group[near], node[near]
+        if not len(group):
+            return most
+        # No point of the group gets more than the best place gives to the farthest corner of its box.
+        place = best[node]
+        far = np.maximum(right[group] - cones.places.start[place], cones.places.start[place] - left[group])
+        reach = cones.places.value[place] + cones.places.slope[place] * np.hypot(far[:, 0], far[:, 1])
+        reach = np.where(cones.places.domain[place] == domain[group], reach, np.inf)
+        first = np.flatnonzero(np.diff(group, prepend=-1))
+        limit[group[first]] = np.minimum(limit[group[first]], np.minimum.reduceat(reach, first))
+    place = node[:, None, None] * _LEAF + np.arange(_LEAF)
+    found = _heights(cones.places, place, points[group][:, :, None], domain[group][:, None, None]).min(axis=2)
+    first = np.flatnonzero(np.diff(group, prepend=-1))
+    lowest_yet = most.copy()
+    lowest_yet[group[first]] = np.minimum(most[group[first]], np.minimum.reduceat(found, first, axis=0))
     return lowest_yet
+
+
+def _heights(places: Places, place: np.ndarray, points: np.ndarray, domain: np.ndarray) -> np.ndarray:
+    """What places (...) give at points (..., 2), inf to those of other domains (...)."""
+    start = places.start[place]
+    along_x, along_y = np.moveaxis(places.end[place] - start, -1, 0)
+    x, y = np.moveaxis(points, -1, 0)
+    x, y = x - start[..., 0], y - start[..., 1]
+    squared = along_x * along_x + along_y * along_y
+    share = np.clip((x * along_x + y * along_y) / np.where(squared > 0, squared, 1), 0, 1)
+    height = places.value[place] + places.slope[place] * np.hypot(x - share * along_x, y - share * along_y)
+    return np.where(places.domain[place] == domain, height, np.inf)
 
 
 def within(cones: Cones, points: np.ndarray, radius: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
