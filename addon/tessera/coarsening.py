@@ -23,8 +23,10 @@ MOST_SEGMENTS = 5  # of the finer boundary to an edge of the coarser one
 # Of the largest elements, so many fit across thin parts, and their edges are at most so many radii of curvature long.
 _ACROSS, _CURVED = 4.5, 0.6
 _SLOPE = 0.4  # how fast they may grow from there, in length per length
-# Levels at which elements would be twice as large beside at least this share of the boundary are worth while.
-_SHARE = 0.5
+# Levels at which elements would be twice as large beside at least this share of the boundary are worth while; and one,
+# inside a rough boundary, where there are twice as many elements as these to each of its edges, two where four times.
+_SHARE, _DEEP = 0.5, 4
+_EQUILATERAL = 4 / np.sqrt(3)  # triangles in the square of their edge length
 _HALF = 0.15  # what half as many edges may differ from the wanted number by
 
 
@@ -121,7 +123,9 @@ def _room(loops, is_hole, target: Target, number: int, corner_angle: float, most
     places = join_places(parts)
     large = lowest(build_cones(places), middle, of, 2.0**most * fine)
     ratio = np.sort(large / fine)[int(_SHARE * len(fine))]
-    levels = min(most, int(np.log2(max(ratio, 1)) + 0.2))
+    area = 0.5 * np.sum(start[:, 0] * end[:, 1] - start[:, 1] * end[:, 0])
+    deep = _EQUILATERAL * area / fine.max() ** 2 / len(fine) / _DEEP
+    levels = min(most, int(max(np.log2(max(ratio, 1)) + 0.2, np.log2(max(deep, 1)))))
     return (places, levels) if levels else None
 
 

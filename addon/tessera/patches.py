@@ -46,10 +46,16 @@ def find_patches(
 def _around_elements(
     triangles: np.ndarray, quality: np.ndarray, free: np.ndarray, poor: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Patches around poor elements: the worst quality (k,) in each, and pairs (p,) of a patch and a vertex it wants."""
-    chosen = np.flatnonzero((quality < poor) & free[triangles].any(axis=1))
-    place, corner = np.nonzero(free[triangles[chosen]])
-    return quality[chosen], place, triangles[chosen[place], corner]
+    """Patches around poor elements: the worst quality (k,) in each, and pairs (p,) of a patch and a vertex it wants.
+
+    Those are the element's free vertices, or all three where none is. The latter patches come last, as there is often
+    nothing to gain: a corner of the boundary may force the element.
+    """
+    chosen = np.flatnonzero(quality < poor)
+    wanted = free[triangles[chosen]]
+    stuck = ~wanted.any(axis=1)
+    place, corner = np.nonzero(wanted | stuck[:, None])
+    return np.where(stuck, poor, quality[chosen]), place, triangles[chosen[place], corner]
 
 
 def _around_vertices(
