@@ -47,6 +47,12 @@ def mean_edge_lengths(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     return np.where(cells >= 0, lengths, 0).sum(axis=1) / count
 
 
+def middles(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """(c, 2) the mean of each cell's vertices."""
+    real = cells >= 0
+    return np.where(real[..., None], points[cells], 0).sum(axis=1) / real.sum(axis=1)[:, None]
+
+
 def wanted_edge_lengths(
     points: np.ndarray, cells: np.ndarray, owner: np.ndarray, target: Callable[[np.ndarray, np.ndarray], np.ndarray]
 ) -> np.ndarray:
@@ -59,7 +65,7 @@ def wanted_edge_lengths(
     contours = points[cells]
     after = next_vertices(contours, count)
     real = cells >= 0
-    centre = (np.where(real[..., None], contours, 0).sum(axis=1) / count[:, None])[:, None]
+    centre = middles(points, cells)[:, None]
     u, v = contours - centre, after - centre
     area = np.where(real, np.maximum(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0], 0), 0)
     of = np.repeat(owner, cells.shape[1])

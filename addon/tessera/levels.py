@@ -110,7 +110,7 @@ def _mesh_levels(
         vertices, triangles, region = refined.vertices, refined.triangles[stay], region[refined.parent][stay]
         if not len(triangles):
             break
-        improvement = improve(vertices, triangles, region, passes, watch, meshes.fixed)
+        improvement = improve(vertices, triangles, region, sizing, passes, watch, meshes.fixed)
         vertices, triangles, region, more = yield from within(improvement, middle, end)
         fallbacks[: len(more)] += more
     return RegionMeshes(vertices, triangles, region, fallbacks, meshes.fixed), np.concatenate(failed)

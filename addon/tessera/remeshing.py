@@ -11,10 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .assembly import mean_edge_lengths, mesh_cells
+from .assembly import mean_edge_lengths, mesh_cells, middles
 from .edges import off_boundary
 from .patches import find_patches
 from .quality import element_quality
+from .refinement import Sizing
 from .relaxation import relax
 from .steps import Progress, Steps, within
 from .stopwatch import Stopwatch
@@ -32,15 +33,17 @@ def improve(
     vertices: np.ndarray,
     triangles: np.ndarray,
     domain: np.ndarray,
+    sizing: Sizing,
     passes: int,
     watch: Stopwatch,
     fixed: np.ndarray | None = None,
 ) -> Steps[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
     """Relax a mesh, then mesh its poor patches again and relax, a few times.
 
-    vertices: (n, 2); triangles: (m, 3); domain: (m,) int from 0: each domain is treated as it would be alone;
-    passes: of relaxation; fixed: (f, 2) edges that stay, as the boundary does. Returns
-    the same of the better mesh, where vertices that it has no use for stay, and the fallbacks of each domain.
+    vertices: (n, 2); triangles: (m, 3); domain: (m,) int from 0: each domain is treated as it would be alone; sizing:
+    (k, 2) points and the domains (k,) that they are in -> (k,) wanted edge lengths; passes: of relaxation; fixed:
+    (f, 2) edges that stay, as the boundary does. Returns vertices, triangles and domain of the better mesh, where
+    vertices that it has no use for stay, and the fallbacks of each domain.
     """
     fallbacks = np.zeros(int(domain.max()) + 1, dtype=np.int64)
     free = off_boundary(triangles, len(vertices), fixed)
@@ -57,7 +60,7 @@ def improve(
         if not len(contours):
             continue
         start, end = (_RELAXED + (1 - _RELAXED) * (turn + n) / TURNS for n in (0, 1))
-        remesh = _remesh(vertices, triangles, domain, quality, contours, patch, watch)
+        remesh = _remesh(vertices, triangles, domain, quality, contours, patch, sizing, watch)
         found = yield from within(remesh, start, end)
         np.add.at(fallbacks, found.homes, found.fallbacks)
         triangles, domain = found.triangles, found.domain
@@ -99,19 +102,21 @@ def _remesh(
     quality: np.ndarray,
     contours: np.ndarray,
     patch: np.ndarray,
+    sizing: Sizing,
     watch: Stopwatch,
 ) -> Steps[_Remeshed]:
     """Mesh patches (c, N) again, once; patch: (m,) the one that each element is in, or -1."""
     n, taken = len(contours), np.flatnonzero(patch >= 0)
-    lengths = mean_edge_lengths(vertices, contours)
+    home = np.zeros(n, dtype=domain.dtype)
+    home[patch[taken]] = domain[taken]
+    # A patch is no reason for smaller elements than are wanted, though its own edges may be shorter.
+    lengths = np.maximum(mean_edge_lengths(vertices, contours), sizing(middles(vertices, contours), home))
     points, new, made, fell = yield from mesh_cells(vertices, contours, lengths, watch, _MORE)
     before = _worth(quality[taken], patch[taken], n)
     after = _worth(element_quality(points, new), made, n * len(_MORE)).reshape(n, -1)
     better = np.flatnonzero(after.max(axis=1) > before + _GAIN)
     chosen = better * len(_MORE) + after[better].argmax(axis=1)
     come = np.isin(made, chosen)
-    home = np.zeros(n, dtype=domain.dtype)
-    home[patch[taken]] = domain[taken]
     stay = ~np.isin(patch, better)
     points, new = _without_unused(points, new[come], len(vertices))
     return _Remeshed(
