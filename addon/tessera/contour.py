@@ -169,16 +169,30 @@ def nesting(loops: Sequence[np.ndarray]) -> Nesting:
     """Which of the cleaned loops (k, 2) of one domain, that do not meet, are outer contours and which are holes."""
     n = len(loops)
     low, high = (np.array([extreme(p, axis=0) for p in loops]).reshape(n, 2) for extreme in (np.min, np.max))
-    inside = np.zeros((n, n), dtype=bool)
+    order, begin, end = starting_between(low[:, 0], low[:, 0], high[:, 0])
+    pairs = [np.zeros((0, 2), dtype=np.int64)]
     for i, loop in enumerate(loops):
-        candidates = np.nonzero(np.all((low[i] < low) & (high < high[i]), axis=1))[0]
-        first = np.array([loops[j][0] for j in candidates]).reshape(-1, 2)
-        inside[candidates, i] = points_inside(first, loop)
-    depth = inside.sum(axis=1)
-    holes = np.nonzero(depth % 2 == 1)[0]
-    # The loop directly around a hole is the one around it that itself lies deepest.
-    parent = np.argmax(np.where(inside[holes], depth + 1, 0), axis=1) if len(holes) else holes
-    return Nesting(np.nonzero(depth % 2 == 0)[0], holes, parent)
+        near = order[begin[i] : end[i]]
+        near = near[np.all((low[i] < low[near]) & (high[near] < high[i]), axis=1)]
+        if len(near):
+            near = near[points_inside(np.array([loops[j][0] for j in near]), loop)]
+            pairs.append(np.column_stack([near, np.full(len(near), i)]))
+    inner, outer = np.concatenate(pairs).T
+    depth = np.bincount(inner, minlength=n)
+    # The loop directly around another is the one around it that itself lies deepest: the last to be written.
+    parent, last = np.full(n, -1), np.argsort(depth[outer], kind="stable")
+    parent[inner[last]] = outer[last]
+    holes = np.flatnonzero(depth % 2 == 1)
+    return Nesting(np.flatnonzero(depth % 2 == 0), holes, parent[holes])
+
+
+def starting_between(values: np.ndarray, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, ...]:
+    """The order of values (n,), and from where to where (k,) in it those from low to high (k,) are.
+
+    So that what lies in a box need not be looked for among all.
+    """
+    order = np.argsort(values, kind="stable")
+    return order, np.searchsorted(values[order], low), np.searchsorted(values[order], high, side="right")
 
 
 def points_inside(points: np.ndarray, loop: np.ndarray) -> np.ndarray:

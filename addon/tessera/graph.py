@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .contour import points_inside
+from .contour import points_inside, starting_between
 from .faces import find_faces
 from .predicates import orientation
 
@@ -85,13 +85,15 @@ def graph_faces(points: np.ndarray, edges: np.ndarray) -> Faces:
     deepest = np.full(len(lowest), -1)
     tips = points[lowest]
     inside = [np.zeros((0, 2), dtype=np.int64)]
+    corner = points[tails[walk]]
+    low, high = (np.stack([side.reduceat(p, ends - size) for p in corner.T]).T for side in (np.minimum, np.maximum))
+    by_x, begin, end = starting_between(tips[:, 0], low[:, 0], high[:, 0])
     for number in np.flatnonzero(bounded):
-        corners = tails[walk[ends[number] - size[number] : ends[number]]]
-        own, polygon = component[corners[0]], points[corners]
-        near = np.flatnonzero(np.all((tips > polygon.min(axis=0)) & (tips < polygon.max(axis=0)), axis=1))
-        near = near[near != own]
+        near = by_x[begin[number] : end[number]]
+        near = near[np.all((tips[near] > low[number]) & (tips[near] < high[number]), axis=1)]
+        near = near[near != component[tails[walk[ends[number] - 1]]]]
         if len(near):
-            near = near[points_inside(tips[near], polygon)]
+            near = near[points_inside(tips[near], corner[ends[number] - size[number] : ends[number]])]
             inside.append(np.column_stack([near, np.full(len(near), number)]))
     inner, outer = np.concatenate(inside).T
     depth = np.bincount(inner, minlength=len(lowest))

@@ -99,6 +99,7 @@ def _domain(
     loops: Sequence[ArrayLike], points: ArrayLike | None, lines: Sequence[ArrayLike]
 ) -> Sequence[ArrayLike] | Domain:
     """What `domains_in_steps` takes."""
+    loops, lines = list(loops), list(lines)
     return Domain(loops, None, points, lines) if points is not None or len(lines) > 0 else loops
 
 
@@ -131,6 +132,7 @@ def mesh_regions(
     is as of `mesh`. Raises ContourError, "overlap" for regions that overlap.
     """
     settings = Settings(sizing, min_edge_length, gradation, boundary, corner_angle, passes, flips, smooth)
+    regions = [list(region) for region in regions]
     loops = [loop for region in regions for loop in region]
     of = [number for number, region in enumerate(regions) for _ in region]
     return finish(_one_in_steps(Domain(loops, of, points, lines), edge_length, settings))
@@ -228,8 +230,7 @@ def domains_in_steps(
         outlines = outlines_of(results, nested, planar, numbers)
         if settings.boundary == "resample":
             outlines = resampled(outlines, target, limits.corner_angle)
-        start, end, of = outlines.edges()
-        gaps = gap_warnings(start, end, outlines.domains[of], target)
+        gaps = gap_warnings(*_segments(outlines), target)
     if numbers:
         meshes = yield from within(_finished(outlines, target, limits, settings, watch), 0.1, 1.0)
         domain, first = outlines.domains, outlines.firsts
@@ -254,6 +255,13 @@ def domains_in_steps(
                 seconds=watch.seconds,
             )
     return [target.errors.get(number, result) for number, result in enumerate(results)]
+
+
+def _segments(outlines: Outlines) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Start and end (s, 2) of what has vertices before meshing, edges and points alone, and the domain of each (s,)."""
+    (start, end, of), (points, home) = outlines.edges(), outlines.points()
+    domain = outlines.domains[np.concatenate([of, home])]
+    return np.concatenate([start, points]), np.concatenate([end, points]), domain
 
 
 def _finished(

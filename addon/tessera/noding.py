@@ -23,13 +23,15 @@ TOLERANCE = 1e-6
 class Noded:
     """Curves as edges (e, 2) of common points (p, 2), each edge once.
 
-    point_of: (n,) the point that each of the curves' vertices became; edge, curve, sign: (t,) which edges each curve
-    runs along, and whether from the edge's first end to its second (1) or back (-1).
+    point_of: (n,) the point that each of the curves' vertices became; first: (c,) that of each curve's first; edge,
+    curve, sign: (t,) which edges each curve runs along, and whether from the edge's first end to its second (1) or back
+    (-1).
     """
 
     points: np.ndarray
     edges: np.ndarray
     point_of: np.ndarray
+    first: np.ndarray
     edge: np.ndarray
     curve: np.ndarray
     sign: np.ndarray
@@ -63,7 +65,7 @@ def node_curves(curves: Sequence[np.ndarray], closed: Sequence[bool], tolerance:
     sign = np.where(edge[:, 0] < edge[:, 1], 1, -1)
     key, number = np.unique(edge.min(axis=1) * len(used) + edge.max(axis=1), return_inverse=True)
     edges = np.stack(np.divmod(key, len(used)), axis=1)
-    noded = Noded(points[used], edges, point_of, number, curve[start[of]], sign)
+    noded = Noded(points[used], edges, point_of, point_of[first], number, curve[start[of]], sign)
     return _crossing(noded, curve) or noded
 
 

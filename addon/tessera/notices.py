@@ -46,14 +46,15 @@ def lost_area_warnings(area: float, vertices: np.ndarray, triangles: np.ndarray,
 
 
 def gap_warnings(start: np.ndarray, end: np.ndarray, domain: np.ndarray, target: Target) -> dict[int, tuple[str, ...]]:
-    """By domain, a warning where edges that share no vertex come very near to each other.
+    """By domain, a warning where edges that share no vertex, or points, come very near to each other.
 
-    start, end (e, 2), domain (e,): all edges; target: points (n, 2) of domains (n,) -> (n,) wanted edge lengths. Near
-    is what is a small share of that and of both edges.
+    start, end (e, 2), domain (e,): all edges, a point by itself is one to itself; target: points (n, 2) of domains (n,)
+    -> (n,) wanted edge lengths. Near is what is a small share of that and of both edges.
     """
     if not len(start):
         return {}
-    reach = GAP * np.minimum(np.linalg.norm(end - start, axis=1), target(0.5 * (start + end), domain))
+    length = np.linalg.norm(end - start, axis=1)
+    reach = GAP * np.minimum(np.where(length > 0, length, np.inf), target(0.5 * (start + end), domain))
     most = np.zeros(int(domain.max()) + 1)
     np.maximum.at(most, domain, reach)
     unit = most[domain, None]  # each domain in its own measure, so that none makes others slow
@@ -64,7 +65,7 @@ def gap_warnings(start: np.ndarray, end: np.ndarray, domain: np.ndarray, target:
         pairs, a, b, c, d = (part[~joined] for part in (pairs, a, b, c, d))
         ends, others = np.stack([a, b, c, d]), np.stack([c, c, a, a])
         along = np.stack([d - c, d - c, b - a, b - a])
-        share = np.clip(((ends - others) * along).sum(-1) / (along**2).sum(-1), 0, 1)
+        share = np.clip(((ends - others) * along).sum(-1) / np.maximum((along**2).sum(-1), np.finfo(float).tiny), 0, 1)
         apart = np.linalg.norm(ends - others - share[..., None] * along, axis=-1)
         row = np.flatnonzero(apart.min(axis=0) < reach[pairs].min(axis=1))
         nearest = apart[:, row].argmin(axis=0)

@@ -67,6 +67,15 @@ class Outlines:
             of.append(np.full(len(graph.edges), self.firsts[number]))
         return np.concatenate(starts), np.concatenate(ends), np.concatenate(of)
 
+    def points(self) -> tuple[np.ndarray, np.ndarray]:
+        """Points (p, 2) that are on no edge and must be vertices, and the region that each is in (p,)."""
+        places, of = [np.zeros((0, 2))], [np.zeros(0, dtype=np.int64)]
+        for number, graph in self.graphs.items():
+            alone = graph.home >= 0
+            places.append(graph.points[alone])
+            of.append(self.firsts[number] + graph.home[alone])
+        return np.concatenate(places), np.concatenate(of)
+
     def together(self) -> np.ndarray:
         """(r,) the region whose number stands for each in `edges`: itself, or the first of its graph."""
         own = np.arange(len(self.domains))

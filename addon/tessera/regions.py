@@ -22,22 +22,28 @@ def face_regions(noded: Noded, faces: Faces, n_loops: int, owner: np.ndarray | N
     owner = np.zeros(n_loops, dtype=np.int64) if by_contour else owner
     traced = noded.curve < n_loops
     edge, loop, sign = noded.edge[traced], noded.curve[traced], noded.sign[traced]
-    wound = np.abs(signed := _windings(len(noded.edges), edge, loop, sign, faces, len(owner)))
+    signed = _windings(len(noded.edges), edge, loop, sign, faces, len(owner))
+    # Which contours are around which faces: of thousands of contours, few are around the same one.
+    face, around = np.nonzero(signed)
+    _check_lost(noded, around, len(owner))
     touching, pairs = _touching(noded, edge, loop, owner)
     _check_turns(noded, edge, loop, signed)
-    _check_crossings(noded, edge, loop, wound, pairs)
-    inside = np.zeros((faces.count, int(owner.max()) + 1), dtype=np.int64)
-    np.add.at(inside.T, owner, wound.T)
-    covered = inside % 2 == 1
-    _check_overlaps(noded, faces, covered)
-    _check_double_edges(noded, faces, edge, loop, owner, covered)
+    _check_crossings(noded, edge, loop, face, around, pairs)
+    inside, count = np.unique(np.column_stack([face, owner[around]]), axis=0, return_counts=True)
+    covered, domain = inside[count % 2 == 1].T
+    _check_overlaps(noded, faces, covered, domain)
+    _check_double_edges(noded, faces, edge, loop, owner, covered, domain)
+    region = np.full(faces.count, -1)
     if not by_contour:
-        return np.where(covered.any(axis=1), covered.argmax(axis=1), -1), touching
+        region[covered] = domain
+        return region, touching
     # The innermost contour around a face is the one around which there are most others.
-    depth = inside[:, 0]
-    level = np.where(wound > 0, depth[:, None], np.iinfo(np.int64).max).min(axis=0)
-    innermost = np.where(wound > 0, level, -1).argmax(axis=1)
-    return np.where(depth % 2 == 1, innermost, -1), touching
+    depth = np.bincount(face, minlength=faces.count)
+    level = np.full(len(owner), faces.count)
+    np.minimum.at(level, around, depth[face])
+    order = np.argsort(level[around], kind="stable")
+    region[face[order]] = around[order]
+    return np.where(depth % 2 == 1, region, -1), touching
 
 
 def _windings(n_edges, edge, loop, sign, faces: Faces, n_loops: int) -> np.ndarray:
@@ -93,20 +99,34 @@ def _check_turns(noded: Noded, edge, loop, signed: np.ndarray) -> None:
         raise _meeting(True, noded.points[noded.edges[key[count > 1][0, 0]]].mean(axis=0))
 
 
-def _check_crossings(noded: Noded, edge, loop, wound: np.ndarray, pairs: np.ndarray) -> None:
+def _check_lost(noded: Noded, around: np.ndarray, n_loops: int) -> None:
+    """Every contour is around a face: none is so small that its vertices became one with others."""
+    lost = np.setdiff1d(np.arange(n_loops), around)
+    if len(lost):
+        x, y = map(float, noded.points[noded.first[lost[0]]])
+        message = (
+            f"The contour at ({x:.9g}, {y:.9g}) is thinner than a millionth of the domain's size, and what is as near "
+            "to each other is joined. Leave it out, or mesh it by itself."
+        )
+        raise ContourError("zero-area", message, (x, y))
+
+
+def _check_crossings(noded: Noded, edge, loop, face: np.ndarray, around: np.ndarray, pairs: np.ndarray) -> None:
     """Contours that touch lie inside each other or beside each other."""
+    faces_in = np.split(face[np.argsort(around, kind="stable")], np.cumsum(np.bincount(around))[:-1])
     for one, other in pairs:
-        a, b = wound[:, one] > 0, wound[:, other] > 0
-        if (a & b).any() and (a & ~b).any() and (b & ~a).any():
+        both = len(np.intersect1d(faces_in[one], faces_in[other], assume_unique=True))
+        if 0 < both < min(len(faces_in[one]), len(faces_in[other])):
             common = np.intersect1d(noded.edges[edge[loop == one]], noded.edges[edge[loop == other]])
             raise _meeting(False, noded.points[common[0]])
 
 
-def _check_overlaps(noded: Noded, faces: Faces, covered: np.ndarray) -> None:
-    several = np.flatnonzero(covered.sum(axis=1) > 1)
+def _check_overlaps(noded: Noded, faces: Faces, covered: np.ndarray, domain: np.ndarray) -> None:
+    """No face is in two domains; covered, domain (k,): faces, in order, and domains that they are in."""
+    several = np.flatnonzero(covered[1:] == covered[:-1])
     if len(several):
-        one, other = np.flatnonzero(covered[several[0]])[:2]
-        half_edge = np.flatnonzero(faces.of_half_edge == several[0])[0]
+        one, other = domain[several[0]], domain[several[0] + 1]
+        half_edge = np.flatnonzero(faces.of_half_edge == covered[several[0]])[0]
         x, y = noded.points[noded.edges[half_edge % len(noded.edges)]].mean(axis=0)
         message = (
             f"Regions {one} and {other} (counting from 0) overlap near ({x:.9g}, {y:.9g}). Move their contours apart, "
@@ -115,13 +135,16 @@ def _check_overlaps(noded: Noded, faces: Faces, covered: np.ndarray) -> None:
         raise ContourError("overlap", message, (float(x), float(y)))
 
 
-def _check_double_edges(noded: Noded, faces: Faces, edge, loop, owner, covered: np.ndarray) -> None:
-    """Where contours of one domain run along each other, both have the inside of the domain beside them."""
+def _check_double_edges(noded: Noded, faces: Faces, edge, loop, owner, covered, inside) -> None:
+    """Where contours of one domain run along each other, both have the inside of the domain beside them.
+
+    covered, inside (k,): faces, and domains that they are in.
+    """
     order = np.lexsort((owner[loop], edge))
     same = (np.diff(edge[order]) == 0) & (np.diff(owner[loop][order]) == 0)
     double, domain = edge[order][1:][same], owner[loop][order][1:][same]
-    left, right = np.split(faces.of_half_edge, 2)
-    open_ = ~(covered[left[double], domain] & covered[right[double], domain])
+    sides = np.stack(np.split(faces.of_half_edge, 2))[:, double]
+    open_ = ~np.isin(sides + faces.count * domain, covered + faces.count * inside).all(axis=0)
     if open_.any():
         raise _meeting(False, noded.points[noded.edges[double[open_][0]]].mean(axis=0))
 

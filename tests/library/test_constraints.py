@@ -221,3 +221,24 @@ def test_constraints_in_a_letter():
     mesh = tessera.mesh([LETTER_E / 7], 0.08, lines=lines, boundary="resample", flips=True, smooth=3)
     check_line(mesh.vertices, mesh.triangles, lines[0], 1.0)
     assert mesh.report.q_worst > 0.4
+
+
+@pytest.mark.parametrize(
+    ("points", "lines"),
+    [
+        ([[0.5, 2e-5]], []),  # beside the contour
+        ([[0.5, 0.5], [0.5, 0.5 + 2e-5]], []),
+        ([[0.5, 0.5 + 2e-5]], [[[0.2, 0.5], [0.8, 0.5]]]),
+    ],
+)
+@pytest.mark.parametrize("boundary", ["resample", "keep"])
+def test_points_that_are_nearly_on_something_are_warned_of(points, lines, boundary):
+    mesh = tessera.mesh([SQUARE], 0.1, points=points, lines=lines, boundary=boundary)
+    check_points(mesh.vertices, points)
+    assert any("near to each other as 2e-05 at (0.5" in warning for warning in mesh.report.warnings)
+
+
+def test_loops_and_lines_may_be_any_iterable():
+    mesh = tessera.mesh((loop for loop in [SQUARE]), 0.2, lines=(line for line in [[[0.2, 0.5], [0.8, 0.5]]]))
+    check_line(mesh.vertices, mesh.triangles, [[0.2, 0.5], [0.8, 0.5]], 1.0)
+    assert tessera.mesh((loop for loop in [SQUARE]), 0.5).report.n_triangles > 4

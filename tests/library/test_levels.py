@@ -13,6 +13,7 @@ from tessera.gradation import Target
 from tessera.levels import mesh_by_levels
 from tessera.outlines import outlines_of
 from tessera.quality import element_quality
+from tessera.refinement import Refined
 from tessera.steps import finish
 from tessera.stopwatch import Stopwatch
 from tests.library.polygons import circle, seeds
@@ -170,3 +171,32 @@ def test_progress_goes_on_over_levels():
     for progress in steps:
         shares.append(progress.share)
     assert shares == sorted(shares) and shares[-1] == pytest.approx(1)
+
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_where_every_domain_fails_a_level_all_start_again_with_one_less(monkeypatch, times):
+    """As if none of a group fitted: it then has nothing left to mesh at the finer levels."""
+    loops, failures = [spaced(128), spaced(120)], []
+    refine = tessera.levels.refine
+
+    def unfit(vertices, triangles, domain, sizing, watch, arcs=None, fixed=None):
+        refined = yield from refine(vertices, triangles, domain, sizing, watch, arcs, fixed)
+        if arcs is None or len(failures) == times:
+            return refined
+        failures.append(np.unique(domain))
+        n, parent = len(triangles), np.arange(len(triangles))
+        return Refined(vertices, triangles, parent, np.zeros(n, dtype=np.int64), arcs.number, failures[-1])
+
+    h = 2 * np.pi / 128
+    cleaned = clean_domains([[loop] for loop in loops])
+    outlines = outlines_of(cleaned, [nesting(loop) for loop in cleaned], {}, [0, 1])
+    both = Target({}, None, np.array([h, h]), np.zeros(2))
+    expected = finish(mesh_by_levels(outlines, both, CORNER, 3, Stopwatch(), np.array([3 - times, 3 - times])))
+    monkeypatch.setattr(tessera.levels, "refine", unfit)
+    found = finish(mesh_by_levels(outlines, both, CORNER, 3, Stopwatch()))
+    assert [len(domains) for domains in failures] == [2] * times
+    for number, loop in enumerate(loops):
+        parts = [meshes.triangles[meshes.region == number] for meshes in (found, expected)]
+        used, local = np.unique(parts[0], return_inverse=True)
+        check_mesh(found.vertices[used], local.reshape(-1, 3), [loop])
+        np.testing.assert_array_equal(found.vertices[parts[0]], expected.vertices[parts[1]])

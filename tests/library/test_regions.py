@@ -1,5 +1,6 @@
 """Several regions as one mesh: shared edges have the same vertices, every triangle knows its region."""
 
+import tracemalloc
 from itertools import pairwise
 
 import numpy as np
@@ -8,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import tessera
+from tessera.constraints import Domain, planar_domain
 from tests.library.polygons import circle, placed, placements, seeds, simple_polygons
 from tests.validity import check_mesh, check_partition, check_regions, polygon_area
 
@@ -210,3 +212,31 @@ def test_a_hole_that_another_region_fills_is_no_thin_part():
     plain = tessera.mesh_regions(regions, 0.5)
     sized = tessera.mesh_regions(regions, 0.5, sizing=tessera.by_thickness(2))
     assert sized.report.n_triangles < 1.5 * plain.report.n_triangles
+
+
+def test_a_region_lost_in_the_tolerance_is_an_error():
+    tiny = circle(16) * 2e-6 + 0.5
+    for mesh in (
+        lambda: tessera.mesh_regions([[SQUARE, tiny], [tiny]], 0.1),
+        lambda: tessera.mesh([SQUARE, 0.1 * (tiny - 0.5) + 0.5], 0.1, lines=[[[0.5, 0.5 + 2e-7], [0.8, 0.5]]]),
+    ):
+        with pytest.raises(tessera.ContourError) as error:
+            mesh()
+        assert error.value.reason == "zero-area" and error.value.place == pytest.approx((0.5, 0.5), abs=1e-5)
+
+
+def test_an_empty_region_has_no_triangles():
+    mesh = tessera.mesh_regions((iter([loop]) for loop in (SQUARE, SQUARE + [1, 0])), 0.3)
+    assert set(mesh.region.tolist()) == {0, 1}
+    mesh = tessera.mesh_regions([[], [SQUARE]], 0.3)
+    assert set(mesh.region.tolist()) == {1}
+
+
+def test_memory_does_not_grow_with_the_square_of_the_number_of_regions():
+    places = np.stack(np.meshgrid(np.arange(50), np.arange(50)), axis=-1).reshape(-1, 2)
+    domain = Domain([SQUARE * 0.3 + place for place in places], np.arange(len(places)), None, ())
+    tracemalloc.start()
+    graph = planar_domain(domain).graph
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert graph.n_regions == len(places) and peak < 4 * len(places) ** 2  # half of a table of 8 bytes
