@@ -111,7 +111,7 @@ def _recorded_cells(call: Callable, kind: str, found: Record) -> Callable:
 
 def _recorded_stars(call: Callable, found: Record) -> Callable:
     def better_places(vertices, stars, size):
-        ring = vertices[stars.ring]
+        ring = vertices[stars.ring.T]
         real = np.arange(ring.shape[1]) < stars.n_ring[:, None]
         lengths = np.linalg.norm(next_vertices(ring, stars.n_ring) - ring, axis=-1)
         mean = np.where(real, lengths, 0).sum(axis=1) / stars.n_ring

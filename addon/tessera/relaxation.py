@@ -67,7 +67,7 @@ def _pass(vertices: np.ndarray, sets: list[Stars], disturbed: np.ndarray) -> np.
     moved = np.zeros(len(vertices), dtype=bool)
     for independent in sets:
         around = disturbed[independent.ring] | moved[independent.ring]
-        stars = independent.rows(disturbed[independent.centre] | around.any(axis=1))
+        stars = independent.rows(disturbed[independent.centre] | around.any(axis=0))
         for low, high in pairwise(_PADDED):
             rows = np.flatnonzero((stars.n_ring > low) & (stars.n_ring <= high))
             if len(rows):
@@ -80,10 +80,10 @@ def _pass(vertices: np.ndarray, sets: list[Stars], disturbed: np.ndarray) -> np.
 def _better_places(vertices: np.ndarray, stars: Stars, size: int) -> tuple[np.ndarray, np.ndarray]:
     """New places (S, 2) of the stars' centres, and whether each is better than the old one; size: to pad rings to."""
     old, n = vertices[stars.centre].T, stars.n_ring
-    # The last vertex before the first, and the first in all that is left. Rings are the last axis: they are many.
-    ring = np.tile(stars.ring[:, 0], (size + 2, 1))
-    width = min(size, stars.ring.shape[1])
-    ring[1 : width + 1], ring[0] = stars.ring[:, :width].T, stars.ring[np.arange(len(n)), n - 1]
+    # The last vertex before the first, and the first in all that is left.
+    ring = np.tile(stars.ring[0], (size + 2, 1))
+    width = min(size, len(stars.ring))
+    ring[1 : width + 1], ring[0] = stars.ring[:width], stars.ring[n - 1, np.arange(len(n))]
     # Beside the old place and the size, so that no coordinate is too large or too small for single precision.
     around = np.stack([vertices[:, axis][ring] - old[axis] for axis in (0, 1)])
     scale = np.abs(around).max(axis=(0, 1))

@@ -71,7 +71,7 @@ def _downhill(vertices: np.ndarray, stars: Stars) -> np.ndarray:
     """
     # Coordinates first, then elements around each star, then stars: those are many.
     centre, n = vertices[stars.centre].T, stars.n_ring
-    ring = np.stack([vertices[:, axis][stars.ring.T] for axis in (0, 1)])
+    ring = np.stack([vertices[:, axis][stars.ring] for axis in (0, 1)])
     real = np.arange(ring.shape[1])[:, None] < n
     size = total_in_turn(np.where(real, np.hypot(*(ring - centre[:, None])), 0)) / n
     # Around the centre and beside the size, so that no coordinate is too large or too small.

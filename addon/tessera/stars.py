@@ -9,7 +9,10 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Stars:
-    """Rings of S vertices: centre (S,) vertices, ring (S, R) neighbours counter-clockwise, padded, n_ring (S,)."""
+    """Rings of S vertices: centre (S,) vertices, ring (R, S) neighbours counter-clockwise, padded, n_ring (S,).
+
+    Stars are the last axis, as they are many.
+    """
 
     centre: np.ndarray
     ring: np.ndarray
@@ -17,7 +20,7 @@ class Stars:
 
     def rows(self, rows: np.ndarray) -> Stars:
         """The chosen stars."""
-        return Stars(self.centre[rows], self.ring[rows], self.n_ring[rows])
+        return Stars(self.centre[rows], self.ring[:, rows], self.n_ring[rows])
 
 
 def find_stars(triangles: np.ndarray, free: np.ndarray, largest: int) -> Stars:
@@ -37,10 +40,10 @@ def find_stars(triangles: np.ndarray, free: np.ndarray, largest: int) -> Stars:
     start = np.flatnonzero(np.diff(centre, prepend=-1))
     count = np.diff(start, append=len(centre))
     start, count = start[count <= largest], count[count <= largest]
-    ring = np.zeros((len(start), int(count.max(initial=1))), dtype=np.int64)
+    ring = np.zeros((int(count.max(initial=1)), len(start)), dtype=np.int64)
     corner = start
-    for k in range(ring.shape[1]):
-        ring[:, k] = np.where(k < count, after[corner], ring[:, 0])
+    for k in range(len(ring)):
+        ring[k] = np.where(k < count, after[corner], ring[0])
         corner = following[corner]
     return Stars(centre[start], ring, count)
 
@@ -66,8 +69,8 @@ def independent_sets(stars: Stars, number: np.ndarray) -> list[np.ndarray]:
     rank = (number.astype(np.uint64) * np.uint64(11400714819323198485) >> np.uint64(1)).astype(np.int64)
     row_of = np.full(len(number), -1)
     row_of[stars.centre] = np.arange(len(stars.centre))
-    neighbour = row_of[stars.ring.T]
-    neighbour[np.arange(stars.ring.shape[1])[:, None] >= stars.n_ring] = -1
+    neighbour = row_of[stars.ring]
+    neighbour[np.arange(len(neighbour))[:, None] >= stars.n_ring] = -1
     own, left, sets = rank[stars.centre], np.arange(len(stars.centre)), []
     while len(left):
         chosen, going = [], left

@@ -33,7 +33,7 @@ def test_stars_are_the_rings_of_neighbours():
     free = off_boundary(triangles, len(vertices))
     stars = find_stars(triangles, free, 16)
     assert sorted(stars.centre) == sorted(np.flatnonzero(free))
-    for centre, ring, n in zip(stars.centre, stars.ring, stars.n_ring, strict=True):
+    for centre, ring, n in zip(stars.centre, stars.ring.T, stars.n_ring, strict=True):
         around = triangles[(triangles == centre).any(axis=1)]
         assert set(ring[:n]) == set(around.ravel()) - {centre} and len(around) == n
         pairs = {frozenset(t) - {centre} for t in map(frozenset, around)}
