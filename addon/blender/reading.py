@@ -15,16 +15,15 @@ from .reading_instances import collection_objects, has_instances, node_meshes
 from .reading_mesh import read_mesh
 from .reading_part import read_parts
 from .reading_strokes import read_curves, read_grease_pencil, read_old_grease_pencil
-from .touching import apart
 
 
 def read_outlines(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> list[Outline]:
     """The closed outlines of an object, at the resolution that Blender shows, all in the object's own space.
 
     Usually one, with holes and islands by the even-odd rule as in Blender's own fill, but of splines of all materials
-    together. More than one where there are instances, a mesh's flat parts selected in Edit Mode, or splines that touch:
-    each is to be meshed by itself, and all are to be written together. Raises OutlineError: "open", "not-planar",
-    "too-few-points", "zero-area", "not-finite".
+    together. More than one where there are instances, or a mesh's flat parts selected in Edit Mode: each is to be
+    meshed by itself, and all are to be written together. Raises OutlineError: "open", "not-planar", "too-few-points",
+    "zero-area", "not-finite".
     """
     if obj.type == "MESH" and obj.mode == "EDIT":
         return read_parts(obj)
@@ -38,7 +37,7 @@ def read_outlines(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> list
     if not shows_collection(obj):
         polylines = _own(evaluated, depsgraph)
         if polylines or not has_instances(obj):
-            outlines += apart(make_outline(polylines, world[:3, :3], slots(obj)))
+            outlines.append(make_outline(polylines, world[:3, :3], slots(obj)))
     if has_instances(obj):
         outlines += _instances(evaluated, depsgraph, world)
     if not outlines:
@@ -99,4 +98,4 @@ def _placed(
         return []
     moved = [replace(p, points=p.points @ matrix[:3, :3].T + matrix[:3, 3]) for p in polylines]
     up = inverse(matrix)[2, :3]
-    return apart(make_outline(moved, world[:3, :3], materials, up))
+    return [make_outline(moved, world[:3, :3], materials, up)]

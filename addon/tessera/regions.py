@@ -33,10 +33,13 @@ def face_regions(noded: Noded, faces: Faces, n_loops: int, owner: np.ndarray | N
     _check_double_edges(noded, faces, edge, loop, owner, covered)
     if not by_contour:
         return np.where(covered.any(axis=1), covered.argmax(axis=1), -1), touching
-    # The innermost contour around a face is the one around which there are most others.
+    # The innermost contour around a face is the one around which there are most others; of a hole and what fills it,
+    # the smaller one, or the later.
     depth = inside[:, 0]
     level = np.where(wound > 0, depth[:, None], np.iinfo(np.int64).max).min(axis=0)
-    innermost = np.where(wound > 0, level, -1).argmax(axis=1)
+    rank = np.empty(n_loops, dtype=np.int64)
+    rank[np.lexsort((-(wound > 0).sum(axis=0), level))] = np.arange(n_loops)
+    innermost = np.where(wound > 0, rank, -1).argmax(axis=1)
     return np.where(depth % 2 == 1, innermost, -1), touching
 
 

@@ -210,3 +210,26 @@ def test_a_hole_that_another_region_fills_is_no_thin_part():
     plain = tessera.mesh_regions(regions, 0.5)
     sized = tessera.mesh_regions(regions, 0.5, sizing=tessera.by_thickness(2))
     assert sized.report.n_triangles < 1.5 * plain.report.n_triangles
+
+
+@pytest.mark.parametrize("gap", [-1e-8, 0.0, 1e-8, 3e-7])
+def test_contours_that_all_but_meet_have_common_vertices(gap):
+    """As coordinates that were stored in 32 bits leave them, in a T and along a part of a side."""
+    loops = [SQUARE * 2, SQUARE + [2 + gap, 0.5], SQUARE * 0.5 + [2 + gap, 1.5 + gap]]
+    mesh = tessera.mesh(loops, 0.3)
+    check_regions(mesh.vertices, mesh.triangles, mesh.region, [[loop] for loop in loops], keep=False)
+    sides = np.sort(mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    assert mesh.report.n_vertices - len(np.unique(sides, axis=0)) + mesh.report.n_triangles == 1
+
+
+def test_a_hole_nearer_to_its_contour_than_that_is_meshed_all_the_same():
+    plate = [SQUARE, SQUARE * [0.5, 0.2] + [0.2, 1e-8]]
+    mesh = tessera.mesh(plate, 0.2, boundary="keep")
+    check_mesh(mesh.vertices, mesh.triangles, plate, keep=True)
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2), (1, 0, 2), (2, 1, 0)])
+def test_what_fills_a_hole_is_the_later_of_two_alike(order):
+    loops = [[SQUARE * 3, SQUARE + 1, SQUARE + 1][i] for i in order]
+    mesh = tessera.mesh(loops, 0.5)
+    assert set(mesh.region) == {order.index(0), max(number for number, i in enumerate(order) if i)}
