@@ -36,8 +36,8 @@ class Piece:
 @dataclass(frozen=True)
 class Geometry:
     """vertices: (n, 3) float64; triangles: (m, 3) int32, counter-clockwise from the side that they face; boundary: (b,)
-    int64, the vertices on an edge of one triangle; uv: (m, 3, 2) at each corner, in world units; quality: (m,); materials: (m,) int32,
-    in slots; smooth: (m,) bool."""
+    int64, the vertices on an edge of one triangle; uv: (m, 3, 2) at each corner, in world units; quality: (m,);
+    materials: (m,) int32, in slots; smooth: (m,) bool."""
 
     vertices: np.ndarray
     triangles: np.ndarray

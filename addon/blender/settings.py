@@ -55,8 +55,8 @@ def _length(default, label, description, group, applies=_always, **more):
 class Settings:
     """Everything that a mesh depends on besides its curve; what `Shown` says of each is beside it.
 
-    Choices are upper case words; lengths are in world units, and 0 where they are chosen; angles are in degrees. Numbers
-    are as Blender's properties can hold them, so that panel, script and command make the same mesh.
+    Choices are upper case words; lengths are in world units, and 0 where they are chosen; angles are in degrees.
+    Numbers are as Blender's properties can hold them, so that panel, script and command make the same mesh.
     """
 
     size_by: str = _setting(
