@@ -7,8 +7,8 @@ import pytest
 from addon.blender import notes
 from addon.blender.settings import Settings
 from addon.tessera.quality import element_quality
-from tests.blender.drawing import SQUARE, circle, poly_curve, select, star, triangles, vertices
-from tests.blender.sources import grease_pencil
+from tests.blender.drawing import SQUARE, circle, poly_curve, select, star, text, triangles, vertices
+from tests.blender.sources import grease_pencil, hair_curves
 
 BOW_TIE = ((0, 0), (1, 1), (1, 0), (0, 1))
 
@@ -209,6 +209,26 @@ def test_warnings_name_the_object_also_where_it_is_replaced(capfd):
     poly_curve(SQUARE, name="Coarse")
     assert bpy.ops.tessera.mesh_curve(edge_length=0.1, boundary="KEEP", result="REPLACE") == {"FINISHED"}
     assert "Coarse: 4 of the 4 kept boundary edges are longer" in capfd.readouterr().out
+
+
+@pytest.mark.parametrize("kind", ["CURVE", "FONT", "CURVES", "GREASEPENCIL"])
+def test_what_is_being_edited_is_meshed_as_it_is_there(kind):
+    loop = np.column_stack([SQUARE, np.zeros(4)])
+    draw = {
+        "CURVE": lambda: poly_curve(SQUARE),
+        "FONT": lambda: text("I"),
+        "CURVES": lambda: hair_curves(loop),
+        "GREASEPENCIL": lambda: grease_pencil(loop),
+    }
+    source = draw[kind]()
+    bpy.ops.object.mode_set(mode="EDIT_GPENCIL" if source.type == "GPENCIL" else "EDIT")
+    if kind == "FONT":
+        bpy.ops.font.text_insert(text="II")
+    assert bpy.ops.tessera.mesh_curve(edge_length=0.1) == {"FINISHED"}
+    made = bpy.context.object
+    assert bpy.context.mode == "OBJECT" and made.type == "MESH" and made != source
+    points = vertices(made)[np.unique(triangles(made))]
+    assert np.ptp(points[:, 0]) == pytest.approx(1.0) if kind != "FONT" else np.ptp(points[:, 0]) > 0.5
 
 
 def test_flat_faces_are_remeshed_in_edit_mode_and_the_rest_stays():
