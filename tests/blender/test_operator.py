@@ -254,9 +254,22 @@ def test_flat_faces_are_remeshed_in_edit_mode_and_the_rest_stays():
 
 
 def saved(path):
-    """What Blender would save now, without what every saving changes."""
-    bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, compress=False)
-    return path.read_bytes()
+    """What Blender would save now, four times over (4, n) uint8: in 4.2, each time with another pointer of its own."""
+    files = []
+    for _ in range(4):
+        bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True, compress=False)
+        files.append(np.frombuffer(path.read_bytes(), dtype=np.uint8))
+    return np.stack(files)
+
+
+def unchanged(before, after):
+    """Whether nothing differs but what every saving changes, which is next to nothing: a few pointers of 8 bytes."""
+    if before.shape != after.shape:
+        return False
+    varies = (before != before[0]).any(axis=0) | (after != after[0]).any(axis=0)
+    varies = np.convolve(varies, np.ones(15), mode="same") > 0
+    assert np.count_nonzero(varies) < 200
+    return bool((before[0] == after[0])[~varies].all())
 
 
 @pytest.mark.parametrize(
@@ -266,12 +279,11 @@ def test_a_failure_leaves_the_scene_byte_for_byte_as_it_was(tmp_path, settings):
     poly_curve(BOW_TIE, name="Broken")
     bpy.context.view_layer.update()
     before = saved(tmp_path / "scene.blend")
-    assert saved(tmp_path / "scene.blend") == before  # else this test would say nothing
     with pytest.raises(RuntimeError):
         bpy.ops.tessera.mesh_curve(edge_length=0.2, **settings)
-    assert saved(tmp_path / "scene.blend") == before
+    assert unchanged(before, saved(tmp_path / "scene.blend"))
     bpy.data.objects["Broken"].location.x = 1
-    assert saved(tmp_path / "scene.blend") != before
+    assert not unchanged(before, saved(tmp_path / "scene.blend"))
 
 
 def test_in_a_batch_the_others_go_on_and_a_summary_says_what_failed(capfd):
@@ -326,4 +338,4 @@ def test_steps_that_are_given_up_leave_the_scene_byte_for_byte_as_it_was(tmp_pat
         shares = [next(steps).share for _ in range(n_steps)]
         assert shares == sorted(shares) and 0 <= shares[0] and shares[-1] < 1
         steps.close()
-        assert saved(tmp_path / "scene.blend") == before
+        assert unchanged(before, saved(tmp_path / "scene.blend"))
