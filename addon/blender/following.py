@@ -112,7 +112,8 @@ def _after_load(_path: str, _) -> None:
 
 
 def _following() -> Iterator[bpy.types.Object]:
-    return (obj for obj in bpy.data.objects if is_linked(obj) and obj.tessera.automatic)
+    # The rarest first: this is asked of all objects of the file, at each change.
+    return (obj for obj in bpy.data.objects if obj.tessera.automatic and is_linked(obj))
 
 
 def _handlers() -> tuple:
