@@ -11,7 +11,7 @@ from .kinds import shows_collection
 from .outline import NOTHING, Outline, Polyline, make_outline
 from .plane import inverse
 from .reading_curve import read_curve
-from .reading_instances import collection_objects, has_instances, node_meshes
+from .reading_instances import has_instances, node_curves, node_meshes, placed_objects
 from .reading_mesh import read_mesh
 from .reading_part import read_parts
 from .reading_strokes import read_curves, read_grease_pencil, read_old_grease_pencil
@@ -62,7 +62,7 @@ def _own(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> list[Po
     if evaluated.type in {"CURVE", "FONT"}:
         return read_curve(evaluated, depsgraph)
     if evaluated.type == "CURVES":
-        return read_curves(evaluated)
+        return read_curves(evaluated.data)
     if evaluated.type == "GREASEPENCIL":
         return read_grease_pencil(evaluated, np.array(evaluated.matrix_world, dtype=np.float64))
     if evaluated.type == "GPENCIL":
@@ -75,14 +75,13 @@ def _own(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> list[Po
 def _instances(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph, world: np.ndarray) -> list[Outline]:
     """The outlines of everything that the object places, in its own space."""
     to_object, outlines = inverse(world), []
-    if shows_collection(evaluated):
-        for shown, matrix in collection_objects(evaluated, depsgraph):
-            try:
-                outlines += _placed(_own(shown, depsgraph), to_object @ matrix, world, slots(shown.original))
-            except OutlineError as error:
-                raise OutlineError(error.reason, f"In '{shown.name}': {error}", error.point, error.spline) from error
-    else:
-        for polylines, matrix, materials in node_meshes(evaluated, depsgraph):
+    for shown, matrix in placed_objects(evaluated, depsgraph):
+        try:
+            outlines += _placed(_own(shown, depsgraph), to_object @ matrix, world, slots(shown.original))
+        except OutlineError as error:
+            raise OutlineError(error.reason, f"In '{shown.name}': {error}", error.point, error.spline) from error
+    if not shows_collection(evaluated):
+        for polylines, matrix, materials in (*node_meshes(evaluated, depsgraph), *node_curves(evaluated)):
             outlines += _placed(polylines, to_object @ matrix, world, materials)
     return outlines
 
