@@ -233,3 +233,12 @@ def test_what_fills_a_hole_is_the_later_of_two_alike(order):
     loops = [[SQUARE * 3, SQUARE + 1, SQUARE + 1][i] for i in order]
     mesh = tessera.mesh(loops, 0.5)
     assert set(mesh.region) == {order.index(0), max(number for number, i in enumerate(order) if i)}
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, 1.1, 2.5])
+def test_contours_beside_each_other_to_single_precision_are_no_thin_part(angle):
+    turn = np.array([(np.cos(angle), np.sin(angle)), (-np.sin(angle), np.cos(angle))])
+    loops = [SQUARE * 2, SQUARE + [2, 0.5], SQUARE + [2, 1.5]]
+    loops = [(loop @ turn).astype(np.float32).astype(np.float64) for loop in loops]
+    mesh = tessera.mesh(loops, 0.3, sizing=tessera.by_thickness(3))
+    assert mesh.report.edge_lengths[0] > 0.1
