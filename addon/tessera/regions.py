@@ -35,12 +35,13 @@ def face_regions(noded: Noded, faces: Faces, n_loops: int, owner: np.ndarray | N
         return np.where(covered.any(axis=1), covered.argmax(axis=1), -1), touching
     # The innermost contour around a face is the one around which there are most others; of a hole and what fills it,
     # the smaller one, or the later.
-    depth = inside[:, 0]
-    level = np.where(wound > 0, depth[:, None], np.iinfo(np.int64).max).min(axis=0)
-    rank = np.empty(n_loops, dtype=np.int64)
-    rank[np.lexsort((-(wound > 0).sum(axis=0), level))] = np.arange(n_loops)
-    innermost = np.where(wound > 0, rank, -1).argmax(axis=1)
-    return np.where(depth % 2 == 1, innermost, -1), touching
+    depth, (face, around) = inside[:, 0], np.nonzero(wound)
+    level = np.full(n_loops, np.iinfo(np.int64).max)
+    np.minimum.at(level, around, depth[face])
+    order = np.lexsort((-np.bincount(around, minlength=n_loops), level))
+    rank, highest = np.argsort(order), np.full(faces.count, -1)
+    np.maximum.at(highest, face, rank[around])
+    return np.where(depth % 2 == 1, order[highest], -1), touching
 
 
 def _windings(n_edges, edge, loop, sign, faces: Faces, n_loops: int) -> np.ndarray:

@@ -79,7 +79,7 @@ def test_what_touches_is_one_mesh_without_a_crack(drawn, unit, degrees, boundary
     for number, spline in enumerate(curve.data.splines):
         curve.data.materials.append(bpy.data.materials.new(f"Part {number}"))
         spline.material_index = number
-    assert bpy.ops.tessera.mesh_curve(edge_length=0.3 * unit, boundary=boundary) == {"FINISHED"}
+    assert bpy.ops.tessera.mesh_curve(edge_length=0.15 * unit, boundary=boundary) == {"FINISHED"}
     made = bpy.context.object
     points, tris = vertices(made)[:, :2] / unit, triangles(made)
     far = np.linalg.norm(points[:, None] - points, axis=2) + np.eye(len(points))
