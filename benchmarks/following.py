@@ -30,7 +30,7 @@ def main() -> None:
         obj.tessera.settings.edge_length = float(np.mean(obj.tessera.edge_lengths[1]))
         obj.tessera.settings.size_by = "EDGE_LENGTH"
         seconds = np.min([follow(curve, obj, number) for number in range(TIMES)], axis=0)
-        numbers = "".join(f"{1000 * part:8.0f}" for part in (*seconds, seconds.sum()))
+        numbers = "".join(f"{1000 * part:8.1f}" for part in (*seconds, seconds.sum()))
         print(f"{len(obj.data.polygons):9}{numbers}")
     addon.blender.unregister()
 

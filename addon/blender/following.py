@@ -12,6 +12,7 @@ from collections.abc import Iterator
 import bpy
 from bpy.app.handlers import persistent
 
+from .kinds import shows_collection
 from .linked import fingerprint, is_linked, linked_settings, source_is_there
 
 # Meshes that took longer than this many seconds wait until their source has not changed for as long as _REST.
@@ -91,9 +92,18 @@ def _after_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Non
     changed = {update.id.original.name for update in depsgraph.updates if _matters(update)}
     if changed:
         for obj in _following():
-            source, near = obj.tessera.source, obj.tessera.settings.object_name
-            if {source.name, source.data.name if source.data else "", near.name if near else ""} & changed:
+            near = obj.tessera.settings.object_name
+            if changed & {*_names(obj.tessera.source), near.name if near else ""}:
                 want(obj)
+
+
+def _names(source: bpy.types.Object) -> Iterator[str]:
+    """What the source is made of: itself, its data, and the objects of the collection that it shows, by name."""
+    shown = source.instance_collection.all_objects if shows_collection(source) else ()
+    for obj in (source, *shown):
+        yield obj.name
+        if obj.data is not None:
+            yield obj.data.name
 
 
 def _matters(update: bpy.types.DepsgraphUpdate) -> bool:
@@ -112,7 +122,8 @@ def _after_load(_path: str, _) -> None:
 
 
 def _following() -> Iterator[bpy.types.Object]:
-    return (obj for obj in bpy.data.objects if is_linked(obj) and obj.tessera.automatic)
+    # The rarest first: this is asked of all objects of the file, at each change.
+    return (obj for obj in bpy.data.objects if obj.tessera.automatic and is_linked(obj))
 
 
 def _handlers() -> tuple:

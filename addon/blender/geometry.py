@@ -36,8 +36,8 @@ class Piece:
 @dataclass(frozen=True)
 class Geometry:
     """vertices: (n, 3) float64; triangles: (m, 3) int32, counter-clockwise from the side that they face; boundary: (b,)
-    int64, the vertices on an edge of one triangle; uv: (m, 3, 2) at each corner; quality: (m,); materials: (m,) int32,
-    in slots; smooth: (m,) bool."""
+    int64, the vertices on an edge of one triangle; uv: (m, 3, 2) at each corner, in world units; quality: (m,);
+    materials: (m,) int32, in slots; smooth: (m,) bool."""
 
     vertices: np.ndarray
     triangles: np.ndarray
@@ -115,9 +115,10 @@ def _welded(vertices: np.ndarray, triangles: np.ndarray, owner: np.ndarray) -> n
 
 
 def _side_by_side(pieces: Sequence[Piece], placing: Sequence[np.ndarray | None]) -> list[np.ndarray]:
-    """The flat shapes at the proportion that they have in the world, all by one scale, within the unit square.
+    """The flat shapes (n, 2) in world units, from (0, 0) to the right and up: as large as they are in the world.
 
-    Pieces of one plane keep their places; those of another plane are laid beside them.
+    So a print has one scale on all meshes, whenever they are made. Pieces of one plane keep their places; those of
+    another plane are laid beside them.
     """
     groups: dict[tuple, list[int]] = {}
     for i, (piece, matrix) in enumerate(zip(pieces, placing, strict=True)):
@@ -131,8 +132,7 @@ def _side_by_side(pieces: Sequence[Piece], placing: Sequence[np.ndarray | None])
         for i in group:
             laid[i] = pieces[i].vertices - low + (right, 0.0)
         right += float(size[0] + _GAP * size.max())
-    scale = max(float(points.max()) for points in laid)
-    return [points / scale for points in laid]
+    return laid
 
 
 def _common_slots(

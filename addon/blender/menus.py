@@ -1,5 +1,7 @@
 """Where the operators are found: Object > Convert, the object context menu, and the menus of the Edit Modes."""
 
+from collections.abc import Callable
+
 import bpy
 
 from .kinds import is_readable
@@ -30,17 +32,26 @@ _MENUS = (
     ("VIEW3D_MT_object_convert", _draw_convert),
     ("VIEW3D_MT_object_context_menu", _draw_convert),
     ("VIEW3D_MT_edit_curve", _draw_curve),
+    ("VIEW3D_MT_edit_font", _draw_curve),
+    ("VIEW3D_MT_edit_curves", _draw_curve),
+    ("VIEW3D_MT_edit_greasepencil", _draw_curve),
+    ("VIEW3D_MT_edit_gpencil", _draw_curve),  # of Blender 4.2
     ("VIEW3D_MT_edit_mesh_faces", _draw_faces),
 )
 
 
+def _menus() -> list[tuple[type[bpy.types.Menu], Callable]]:
+    """Those that this Blender has."""
+    return [(getattr(bpy.types, name), draw) for name, draw in _MENUS if hasattr(bpy.types, name)]
+
+
 def register() -> None:
     """Append to the menus."""
-    for name, draw in _MENUS:
-        getattr(bpy.types, name).append(draw)
+    for menu, draw in _menus():
+        menu.append(draw)
 
 
 def unregister() -> None:
     """Remove from the menus."""
-    for name, draw in reversed(_MENUS):
-        getattr(bpy.types, name).remove(draw)
+    for menu, draw in reversed(_menus()):
+        menu.remove(draw)

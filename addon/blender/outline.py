@@ -67,12 +67,6 @@ class Outline:
         """The index of the loop that passes closest to a place (2,), such as a ContourError's."""
         return int(np.argmin([_distance(loop, np.asarray(place)) for loop in self.loops]))
 
-    def of(self, chosen: np.ndarray) -> Outline:
-        """Only the loops of these indices (c,)."""
-        loops = tuple(self.loops[i] for i in chosen)
-        rows = {name: getattr(self, name)[chosen] for name in ("splines", "materials", "smooth")}
-        return replace(self, loops=loops, **rows)
-
     def subdivided(self, edge_length: float) -> Outline:
         """Long edges of a part's boundary divided evenly, so that none is much longer than edge_length.
 

@@ -11,20 +11,19 @@ from .kinds import shows_collection
 from .outline import NOTHING, Outline, Polyline, make_outline
 from .plane import inverse
 from .reading_curve import read_curve
-from .reading_instances import collection_objects, has_instances, node_meshes
+from .reading_instances import has_instances, node_curves, node_meshes, placed_objects
 from .reading_mesh import read_mesh
 from .reading_part import read_parts
 from .reading_strokes import read_curves, read_grease_pencil, read_old_grease_pencil
-from .touching import apart
 
 
 def read_outlines(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> list[Outline]:
     """The closed outlines of an object, at the resolution that Blender shows, all in the object's own space.
 
     Usually one, with holes and islands by the even-odd rule as in Blender's own fill, but of splines of all materials
-    together. More than one where there are instances, a mesh's flat parts selected in Edit Mode, or splines that touch:
-    each is to be meshed by itself, and all are to be written together. Raises OutlineError: "open", "not-planar",
-    "too-few-points", "zero-area", "not-finite".
+    together. More than one where there are instances, or a mesh's flat parts selected in Edit Mode: each is to be
+    meshed by itself, and all are to be written together. Raises OutlineError: "open", "not-planar", "too-few-points",
+    "zero-area", "not-finite".
     """
     if obj.type == "MESH" and obj.mode == "EDIT":
         return read_parts(obj)
@@ -38,7 +37,7 @@ def read_outlines(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> list
     if not shows_collection(obj):
         polylines = _own(evaluated, depsgraph)
         if polylines or not has_instances(obj):
-            outlines += apart(make_outline(polylines, world[:3, :3], slots(obj)))
+            outlines.append(make_outline(polylines, world[:3, :3], slots(obj)))
     if has_instances(obj):
         outlines += _instances(evaluated, depsgraph, world)
     if not outlines:
@@ -63,7 +62,7 @@ def _own(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> list[Po
     if evaluated.type in {"CURVE", "FONT"}:
         return read_curve(evaluated, depsgraph)
     if evaluated.type == "CURVES":
-        return read_curves(evaluated)
+        return read_curves(evaluated.data)
     if evaluated.type == "GREASEPENCIL":
         return read_grease_pencil(evaluated, np.array(evaluated.matrix_world, dtype=np.float64))
     if evaluated.type == "GPENCIL":
@@ -76,14 +75,13 @@ def _own(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> list[Po
 def _instances(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph, world: np.ndarray) -> list[Outline]:
     """The outlines of everything that the object places, in its own space."""
     to_object, outlines = inverse(world), []
-    if shows_collection(evaluated):
-        for shown, matrix in collection_objects(evaluated, depsgraph):
-            try:
-                outlines += _placed(_own(shown, depsgraph), to_object @ matrix, world, slots(shown.original))
-            except OutlineError as error:
-                raise OutlineError(error.reason, f"In '{shown.name}': {error}", error.point, error.spline) from error
-    else:
-        for polylines, matrix, materials in node_meshes(evaluated, depsgraph):
+    for shown, matrix in placed_objects(evaluated, depsgraph):
+        try:
+            outlines += _placed(_own(shown, depsgraph), to_object @ matrix, world, slots(shown.original))
+        except OutlineError as error:
+            raise OutlineError(error.reason, f"In '{shown.name}': {error}", error.point, error.spline) from error
+    if not shows_collection(evaluated):
+        for polylines, matrix, materials in (*node_meshes(evaluated, depsgraph), *node_curves(evaluated)):
             outlines += _placed(polylines, to_object @ matrix, world, materials)
     return outlines
 
@@ -99,4 +97,4 @@ def _placed(
         return []
     moved = [replace(p, points=p.points @ matrix[:3, :3].T + matrix[:3, 3]) for p in polylines]
     up = inverse(matrix)[2, :3]
-    return apart(make_outline(moved, world[:3, :3], materials, up))
+    return [make_outline(moved, world[:3, :3], materials, up)]

@@ -12,9 +12,8 @@ _VECTOR_HANDLE = 2
 _FIELDS = {"FLOAT_VECTOR": ("vector", np.float32, 3), "FLOAT": ("value", np.float32, 1), "BOOLEAN": ("value", bool, 1)}
 
 
-def read_curves(evaluated: bpy.types.Object) -> list[Polyline]:
-    """One polyline a curve of a Curves object, at its own resolution."""
-    data = evaluated.data
+def read_curves(data: bpy.types.Curves) -> list[Polyline]:
+    """One polyline a curve of a Curves object's data, at its own resolution."""
     return _read(data.attributes, data.curve_offset_data)
 
 
@@ -77,9 +76,11 @@ def _placed(polyline: Polyline, matrix: np.ndarray) -> Polyline:
 
 def _read(attributes, offsets, default_type: int = _CATMULL_ROM) -> list[Polyline]:
     """The polylines of one set of curves; what an attribute that is not there means, is Blender's own default."""
+    if "position" not in attributes or not len(attributes["position"].data):
+        return []  # what offsets then say of their own number, is not so
     first = np.empty(len(offsets), dtype=np.int32)
     offsets.foreach_get("value", first)
-    n_curves, n_points = max(len(first) - 1, 0), int(first[-1]) if len(first) else 0
+    n_curves, n_points = len(first) - 1, int(first[-1])
 
     def of_curves(name: str, default: int) -> np.ndarray:
         return _attribute(attributes, name, n_curves, default)

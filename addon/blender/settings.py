@@ -5,8 +5,11 @@ No `bpy` here: `properties.py` makes Blender's properties of the table, `options
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields
+
+import numpy as np
 
 # A length of 0 is chosen by the size of each object: so many edges along the longer side of its largest outline.
 EDGES_ALONG = 25
@@ -53,6 +56,7 @@ class Settings:
     """Everything that a mesh depends on besides its curve; what `Shown` says of each is beside it.
 
     Choices are upper case words; lengths are in world units, and 0 where they are chosen; angles are in degrees.
+    Numbers are as Blender's properties can hold them, so that panel, script and command make the same mesh.
     """
 
     size_by: str = _setting(
@@ -254,6 +258,23 @@ class Settings:
         "result",
         lambda s: s.result == "NEW",
     )
+
+    def __post_init__(self) -> None:
+        for each in fields(self):
+            value = getattr(self, each.name)
+            if isinstance(value, float):
+                object.__setattr__(self, each.name, _as_kept(value, each.metadata["shown"].unit == "angle"))
+
+
+def _as_kept(value: float, is_angle: bool) -> float:
+    """The shortest decimal that Blender keeps as it keeps the value: in single precision, and an angle in radians."""
+
+    def kept(number: float) -> float:
+        return float(np.float32(math.radians(number) if is_angle else number))
+
+    exact = math.degrees(kept(value)) if is_angle else kept(value)
+    decimals = (float(f"{exact:.{digits}g}") for digits in range(1, 17))
+    return next((decimal for decimal in decimals if kept(decimal) == kept(value)), exact)
 
 
 def table() -> dict[str, Shown]:

@@ -19,8 +19,7 @@ def checked_domain(
         return loops
     if not loops:
         return ContourError("too-few-points", "The domain has no contour. Give at least one closed loop of points.")
-    length = sum(float(np.linalg.norm(loop - np.roll(loop, 1, axis=0), axis=1).sum()) for loop in loops)
-    return _too_many(enclosed_area(loops, nested), length, edge_length) or loops
+    return _too_many(enclosed_area(loops, nested), total_length(loops), edge_length) or loops
 
 
 def checked_graph(domain: PlanarDomain, edge_length: float) -> list[np.ndarray] | ContourError:
@@ -48,3 +47,8 @@ def enclosed_area(loops: list[np.ndarray], nested: Nesting) -> float:
     """The area of a domain, without that of its holes; loops: counter-clockwise."""
     areas = np.array([signed_area(loop) for loop in loops])
     return float(areas[nested.outer].sum() - areas[nested.holes].sum())
+
+
+def total_length(loops: list[np.ndarray]) -> float:
+    """The length of all edges of loops (k, 2)."""
+    return sum(float(np.linalg.norm(loop - np.roll(loop, 1, axis=0), axis=1).sum()) for loop in loops)

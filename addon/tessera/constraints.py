@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .contour import checked_points, meeting_error, signed_area, without_repeats
+from .contour import checked_points, edges_of, meeting_error, signed_area, without_repeats
+from .crossings import close_pairs, gaps
 from .errors import ContourError
 from .graph import Graph, graph_faces
 from .noding import TOLERANCE, Crossing, Noded, node_curves
@@ -42,20 +43,42 @@ def planar_domains(
 ) -> tuple[list[list[np.ndarray] | ContourError], dict[int, PlanarDomain]]:
     """`planar_domain` for those of a batch that need it, by number; and `cleaned` with the errors that they have.
 
-    cleaned: of the others, what `clean_domains` gives; one whose contours meet may be told apart with common vertices.
+    cleaned: of the others, what `clean_domains` gives; one whose contours meet, or all but do, may be told apart with
+    common vertices.
     """
     planar, results = {}, list(cleaned)
+    near = _nearly_meeting(cleaned)
     for number, domain in enumerate(domains):
         error = cleaned[number]
         meets = isinstance(error, ContourError) and error.reason in ("crossing", "self-intersection")
-        if not meets and not isinstance(domain, Domain):
+        if not (meets or number in near or isinstance(domain, Domain)):
             continue
         try:
-            planar[number] = planar_domain(Domain(domain, None, None, ()) if meets else domain)
+            planar[number] = planar_domain(domain if isinstance(domain, Domain) else Domain(domain, None, None, ()))
             results[number] = planar[number].loops
         except ContourError as wrong:
-            results[number] = wrong
+            if number not in near:  # else there is a gap, however narrow, and it can be meshed
+                results[number] = wrong
     return results, planar
+
+
+def _nearly_meeting(cleaned: list[list[np.ndarray] | ContourError]) -> set[int]:
+    """The domains whose contours come as near to each other as noding takes for a common place, and do not meet."""
+    several = {n: loops for n, loops in enumerate(cleaned) if not isinstance(loops, ContourError) and len(loops) > 1}
+    if not several:
+        return set()
+    numbers = [number for number, loops in several.items() for _ in loops]
+    start, end = edges_of([loop for loops in several.values() for loop in loops])
+    loop = np.repeat(np.arange(len(numbers)), [len(loop) for loops in several.values() for loop in loops])
+    domain = np.array(numbers)[loop]
+    tolerance = np.zeros(len(cleaned))
+    for number, loops in several.items():
+        tolerance[number] = TOLERANCE * float(np.ptp(np.concatenate(loops), axis=0).max())
+    unit, near = tolerance[domain, None], [domain[:0]]
+    for pairs in close_pairs(start / unit, end / unit, domain, 1.0):
+        pairs = pairs[loop[pairs[:, 0]] != loop[pairs[:, 1]]]
+        near.append(domain[pairs[gaps(start, end, pairs)[0] <= tolerance[domain[pairs[:, 0]]], 0]])
+    return set(np.concatenate(near).tolist())
 
 
 def planar_domain(domain: Domain) -> PlanarDomain:

@@ -8,7 +8,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .contour import clean_domains, nesting, signed_area
+from .budget import enclosed_area, total_length
+from .constraints import planar_domains
+from .contour import clean_domains, nesting
 from .errors import ContourError
 from .mesh import Mesh
 from .steps import Steps, within
@@ -25,15 +27,16 @@ def expected_edge_length(loops: Sequence[ArrayLike], n_triangles: int) -> float:
 
     loops: (k, 2) each, as for `mesh`. Raises ContourError for loops that cannot be meshed.
     """
-    (cleaned,) = clean_domains([loops])
+    (cleaned,), planar = planar_domains([loops], clean_domains([loops]))
     if isinstance(cleaned, ContourError):
         raise cleaned
     if not cleaned:
         raise ContourError("too-few-points", "The domain has no contour. Give at least one closed loop of points.")
-    nested, areas = nesting(cleaned), np.array([signed_area(loop) for loop in cleaned])
-    area = 4 / 3**0.5 * float(areas[nested.outer].sum() - areas[nested.holes].sum())
-    beside = _BESIDE * sum(float(np.linalg.norm(loop - np.roll(loop, 1, axis=0), axis=1).sum()) for loop in cleaned)
-    wanted = n_triangles / _SHARE
+    if planar:
+        area, length = planar[0].graph.area(), planar[0].graph.length()
+    else:
+        area, length = enclosed_area(cleaned, nesting(cleaned)), total_length(cleaned)
+    area, beside, wanted = 4 / 3**0.5 * area, _BESIDE * length, n_triangles / _SHARE
     return (beside + (beside**2 + 4 * wanted * area) ** 0.5) / (2 * wanted)
 
 

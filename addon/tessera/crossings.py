@@ -45,6 +45,21 @@ def crossing_place(start: np.ndarray, end: np.ndarray, pair: np.ndarray) -> tupl
     return float(x), float(y)
 
 
+def gaps(start: np.ndarray, end: np.ndarray, pairs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """How far each of two segments' ends (pairs (k, 2) of segments (n, 2)) are from the other one at least.
+
+    (k,) the distance, and (k, 2) the end that is as near as that. Of segments that do not cross, that is the gap.
+    A point is a segment from itself to itself.
+    """
+    (a, c), (b, d) = start[pairs.T], end[pairs.T]
+    ends, others = np.stack([a, b, c, d]), np.stack([c, c, a, a])
+    along = np.stack([d - c, d - c, b - a, b - a])
+    share = np.clip(((ends - others) * along).sum(-1) / np.maximum((along**2).sum(-1), np.finfo(float).tiny), 0, 1)
+    apart = np.linalg.norm(ends - others - share[..., None] * along, axis=-1)
+    nearest, row = apart.argmin(axis=0), np.arange(len(pairs))
+    return apart[nearest, row], ends[nearest, row]
+
+
 def close_pairs(start: np.ndarray, end: np.ndarray, group: np.ndarray, distance: float = 0.0) -> Iterator[np.ndarray]:
     """Blocks (k, 2) of pairs of segments of one group that may be as near as `distance`; a pair can come twice.
 

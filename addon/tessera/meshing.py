@@ -62,8 +62,8 @@ def mesh(
     target is shorter than min_edge_length, and from one element to the next it changes by no more than the factor
     gradation.
 
-    Contours that touch in vertices, or outside of each other along edges, are meshed with a common boundary there, and
-    a warning. The mesh's region is the number of the outer contour around each triangle.
+    Contours that touch in vertices, or outside of each other along edges, to 1e-6 of the size of all, are meshed with a
+    common boundary there, and a warning. The mesh's region is the number of the outer contour around each triangle.
 
     Raises ContourError, whose ``reason`` is a short word, for input that cannot be meshed, and a plain ValueError for
     what is no sequence of (k, 2) arrays of numbers.

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .crossings import close_pairs
+from .crossings import close_pairs, gaps
 from .sizing import LONG
 from .spacing import Target
 
@@ -62,14 +62,10 @@ def gap_warnings(start: np.ndarray, end: np.ndarray, domain: np.ndarray, target:
     for pairs in close_pairs(start / unit, end / unit, domain, 1.0):
         (a, c), (b, d) = start[pairs.T], end[pairs.T]
         joined = np.logical_or.reduce([(p == q).all(axis=1) for p in (a, b) for q in (c, d)])
-        pairs, a, b, c, d = (part[~joined] for part in (pairs, a, b, c, d))
-        ends, others = np.stack([a, b, c, d]), np.stack([c, c, a, a])
-        along = np.stack([d - c, d - c, b - a, b - a])
-        share = np.clip(((ends - others) * along).sum(-1) / np.maximum((along**2).sum(-1), np.finfo(float).tiny), 0, 1)
-        apart = np.linalg.norm(ends - others - share[..., None] * along, axis=-1)
-        row = np.flatnonzero(apart.min(axis=0) < reach[pairs].min(axis=1))
-        nearest = apart[:, row].argmin(axis=0)
-        found.append((apart[nearest, row], ends[nearest, row], domain[pairs[row, 0]]))
+        pairs = pairs[~joined]
+        gap, place = gaps(start, end, pairs)
+        near = gap < reach[pairs].min(axis=1)
+        found.append((gap[near], place[near], domain[pairs[near, 0]]))
     gap, place, of = (np.concatenate(parts) for parts in zip(*found, strict=True))
     order = np.lexsort((gap, of))
     number, first = np.unique(of[order], return_index=True)

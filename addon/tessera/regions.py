@@ -33,17 +33,19 @@ def face_regions(noded: Noded, faces: Faces, n_loops: int, owner: np.ndarray | N
     covered, domain = inside[count % 2 == 1].T
     _check_overlaps(noded, faces, covered, domain)
     _check_double_edges(noded, faces, edge, loop, owner, covered, domain)
-    region = np.full(faces.count, -1)
     if not by_contour:
+        region = np.full(faces.count, -1)
         region[covered] = domain
         return region, touching
-    # The innermost contour around a face is the one around which there are most others.
+    # The innermost contour around a face is the one around which there are most others; of a hole and what fills it,
+    # the smaller one, or the later.
     depth = np.bincount(face, minlength=faces.count)
     level = np.full(len(owner), faces.count)
     np.minimum.at(level, around, depth[face])
-    order = np.argsort(level[around], kind="stable")
-    region[face[order]] = around[order]
-    return np.where(depth % 2 == 1, region, -1), touching
+    order = np.lexsort((-np.bincount(around, minlength=len(owner)), level))
+    rank, highest = np.argsort(order), np.full(faces.count, -1)
+    np.maximum.at(highest, face, rank[around])
+    return np.where(depth % 2 == 1, order[highest], -1), touching
 
 
 def _windings(n_edges, edge, loop, sign, faces: Faces, n_loops: int) -> np.ndarray:

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from .cones import Places, build_cones, lowest, within
 from .contour import edges_of, nesting
 from .errors import ContourError
+from .noding import TOLERANCE as NODING_TOLERANCE
 from .thickness import thin_parts
 
 # How fast the wanted length may fall off beside an edge that is longer than the target, in length per length.
@@ -185,7 +186,7 @@ def by_thickness(elements: float = 3) -> FromLoops:
         start, end = edges_of(turned)
         here, there = thin_parts(start, end, elements, limits.longest, limits.shortest_found)
         # Contours that lie beside each other have nothing in between.
-        apart = np.linalg.norm(there - here, axis=1) > 1e-9 * np.ptp(start, axis=0).max()
+        apart = np.linalg.norm(there - here, axis=1) > 2 * NODING_TOLERANCE * np.ptp(start, axis=0).max()
         here, there = here[apart], there[apart]
         across = np.linalg.norm(there - here, axis=1) / elements
         return [_places(here, there, np.maximum(across, limits.shortest_found), limits.slope)]

@@ -67,6 +67,27 @@ def test_other_settings_and_other_shapes_are_meshed_anew(tmp_path):
     assert not any(record["earlier"] for record in records.values())
 
 
+def test_what_another_version_has_meshed_is_meshed_anew(tmp_path, monkeypatch):
+    def earlier(*words):
+        return {record["earlier"] for record in run(tmp_path, *words, "--resume")[1].values()}
+
+    bow_tie_and_others()
+    scene, done = tmp_path / "scene.blend", ("--objects", "A0", "A1", "--output", tmp_path / "done.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=str(scene))
+    run(tmp_path, scene)
+    assert earlier(scene) == {True, False}  # the broken one is tried again
+    assert earlier(scene, *done) == {False} and earlier(scene, *done) == {True}
+    monkeypatch.setattr(journal, "version", lambda: "another")
+    assert earlier(scene) == {False} and earlier(scene, *done) == {False}
+    assert earlier(scene) == {True, False} and earlier(scene, *done) == {True}
+
+
+def test_the_version_is_that_of_code_and_networks():
+    names = {path.name for path in (ROOT / "onnx_models").glob("*.onnx")}
+    assert "nn1.onnx" in names and len(journal.version()) == 64
+    assert (ROOT / "addon" / "blender" / "command" / "journal.py").samefile(journal.__file__)
+
+
 def test_without_resume_everything_is_meshed_and_after_success_no_journal_is_left(tmp_path):
     broken = bow_tie_and_others()
     run(tmp_path)

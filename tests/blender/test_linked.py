@@ -7,6 +7,7 @@ import pytest
 from addon.blender import following
 from addon.blender.properties import read_settings
 from tests.blender.drawing import SQUARE, circle, poly_curve, select, vertices
+from tests.blender.sources import collection_of, instance_of
 
 
 @pytest.fixture
@@ -143,6 +144,20 @@ def test_what_a_sizing_refers_to_is_followed_too(square):
     empty.location = (0.5, 0.5, 0)
     bpy.context.view_layer.update()
     assert len(mesh.data.polygons) > 1.3 * many
+
+
+def test_a_collections_instance_is_followed_through_what_it_shows():
+    part = poly_curve(SQUARE, name="Part")
+    empty = instance_of(collection_of(part))
+    select(empty)
+    assert bpy.ops.tessera.mesh_curve(edge_length=0.2, keep_linked=True) == {"FINISHED"}
+    mesh = bpy.context.object
+    mesh.tessera.automatic = True
+    move(part, 1, 2.0)
+    assert right(mesh) == 2.0
+    part.location.x = 1.0
+    bpy.context.view_layer.update()
+    assert right(mesh) == 3.0
 
 
 def test_a_mesh_that_takes_too_long_follows_no_longer(square):

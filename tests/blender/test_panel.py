@@ -46,6 +46,9 @@ def drawn(cls, **context):
         ("VIEW3D_MT_object_convert", "tessera.mesh_curve"),
         ("VIEW3D_MT_object_context_menu", "tessera.mesh_curve"),
         ("VIEW3D_MT_edit_curve", "tessera.mesh_curve"),
+        ("VIEW3D_MT_edit_font", "tessera.mesh_curve"),
+        ("VIEW3D_MT_edit_curves", "tessera.mesh_curve"),
+        ("VIEW3D_MT_edit_greasepencil", "tessera.mesh_curve"),
         ("VIEW3D_MT_edit_mesh_faces", "tessera.remesh_faces"),
     ],
 )

@@ -309,6 +309,59 @@ def test_the_meshes_that_geometry_nodes_place():
     assert lifted(outlines[1])[:, 0].min() > lifted(outlines[0])[:, 0].mean()
 
 
+@pytest.mark.parametrize("kind", ["mesh", "curve", "curves"])
+def test_the_curves_that_geometry_nodes_place(kind):
+    make = {
+        "mesh": lambda: mesh_object([], [], []),
+        "curve": lambda: poly_curve(SQUARE),
+        "curves": lambda: sources.hair_curves(STAR),
+    }
+    obj = make[kind]()
+
+    def letters(tree, _geometry):
+        string = tree.nodes.new("GeometryNodeStringToCurves")
+        string.inputs["String"].default_value = "TO"
+        return string.outputs[0]
+
+    obj.modifiers.new("Nodes", "NODES").node_group = sources.node_group(letters)
+    obj.matrix_basis = Matrix.Translation((3, 4, 5)) @ Matrix.Diagonal((2, 2, 2, 1))
+    if bpy.app.version < (4, 5):
+        with pytest.raises(OutlineError, match="Add a Fill Curve node"):
+            read(obj)
+        return
+    outlines = read(obj)
+    assert [len(outline.loops) for outline in outlines] == [1, 2]
+    assert lifted(outlines[1])[:, 0].min() > lifted(outlines[0])[:, 0].mean()
+    assert 1.0 < outlines[0].size < 2.0  # a letter is two thirds of a unit high
+
+
+def test_the_objects_that_geometry_nodes_place():
+    part = poly_curve(SQUARE, name="Part")
+    ink = bpy.data.materials.new("Ink")
+    part.data.materials.append(ink)
+    obj = mesh_object([], [], [])
+
+    def corners(tree, _geometry):
+        info, grid = tree.nodes.new("GeometryNodeObjectInfo"), tree.nodes.new("GeometryNodeMeshGrid")
+        for name, value in (("Size X", 6.0), ("Size Y", 6.0), ("Vertices X", 2), ("Vertices Y", 2)):
+            grid.inputs[name].default_value = value
+        info.inputs["Object"].default_value, info.inputs["As Instance"].default_value = part, True
+        place = tree.nodes.new("GeometryNodeInstanceOnPoints")
+        tree.links.new(grid.outputs[0], place.inputs["Points"])
+        tree.links.new(info.outputs["Geometry"], place.inputs["Instance"])
+        return place.outputs[0]
+
+    obj.modifiers.new("Nodes", "NODES").node_group = sources.node_group(corners)
+    outlines = read(obj)
+    assert sorted(tuple(lifted(outline).min(axis=0)[:2].round(6)) for outline in outlines) == [
+        (-3, -3),
+        (-3, 3),
+        (3, -3),
+        (3, 3),
+    ]
+    assert {outline.slots for outline in outlines} == {(ink,)}
+
+
 SVG = """<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="60mm" viewBox="0 0 100 60">
 <rect x="5" y="5" width="30" height="40" fill="#c33"/>
 <path d="M50 5 h40 v40 h-40 z M60 15 v20 h20 v-20 z" fill="#36c"/></svg>"""

@@ -240,3 +240,35 @@ def test_memory_does_not_grow_with_the_square_of_the_number_of_regions():
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert graph.n_regions == len(places) and peak < 4 * len(places) ** 2  # half of a table of 8 bytes
+
+
+@pytest.mark.parametrize("gap", [-1e-8, 0.0, 1e-8, 3e-7])
+def test_contours_that_all_but_meet_have_common_vertices(gap):
+    """As coordinates that were stored in 32 bits leave them, in a T and along a part of a side."""
+    loops = [SQUARE * 2, SQUARE + [2 + gap, 0.5], SQUARE * 0.5 + [2 + gap, 1.5 + gap]]
+    mesh = tessera.mesh(loops, 0.3)
+    check_regions(mesh.vertices, mesh.triangles, mesh.region, [[loop] for loop in loops], keep=False)
+    sides = np.sort(mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    assert mesh.report.n_vertices - len(np.unique(sides, axis=0)) + mesh.report.n_triangles == 1
+
+
+def test_a_hole_nearer_to_its_contour_than_that_is_meshed_all_the_same():
+    plate = [SQUARE, SQUARE * [0.5, 0.2] + [0.2, 1e-8]]
+    mesh = tessera.mesh(plate, 0.2, boundary="keep")
+    check_mesh(mesh.vertices, mesh.triangles, plate, keep=True)
+
+
+@pytest.mark.parametrize("order", [(0, 1, 2), (1, 0, 2), (2, 1, 0)])
+def test_what_fills_a_hole_is_the_later_of_two_alike(order):
+    loops = [[SQUARE * 3, SQUARE + 1, SQUARE + 1][i] for i in order]
+    mesh = tessera.mesh(loops, 0.5)
+    assert set(mesh.region) == {order.index(0), max(number for number, i in enumerate(order) if i)}
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, 1.1, 2.5])
+def test_contours_beside_each_other_to_single_precision_are_no_thin_part(angle):
+    turn = np.array([(np.cos(angle), np.sin(angle)), (-np.sin(angle), np.cos(angle))])
+    loops = [SQUARE * 2, SQUARE + [2, 0.5], SQUARE + [2, 1.5]]
+    loops = [(loop @ turn).astype(np.float32).astype(np.float64) for loop in loops]
+    mesh = tessera.mesh(loops, 0.3, sizing=tessera.by_thickness(3))
+    assert mesh.report.edge_lengths[0] > 0.1

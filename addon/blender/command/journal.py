@@ -2,15 +2,18 @@
 
 Beside each file that is written there is the folder `.tessera/NAME/` while it is in work. Every process appends to
 files of its own there: the arrays of a curve to `RUN-PID.bin`, then its line to `RUN-PID.jsonl`. A curve counts once
-its line is whole, so that a kill loses the curve in hand alone. `done.json` is written when the file itself is.
+its line is whole, so that a kill loses the curve in hand alone. `done.json` is written when the file itself is. What
+another version of the add-on has done does not count, so that no run mixes the meshes of two.
 """
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import shutil
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -34,6 +37,15 @@ def folder_of(target: Path) -> Path:
     return target.parent / FOLDER / target.name
 
 
+@cache
+def version() -> str:
+    """A word for the code and the networks that meshes are made by."""
+    root, digest = Path(__file__).parents[3], hashlib.sha256()
+    for path in sorted((*root.glob("addon/**/*.py"), *root.glob("onnx_models/*.onnx"))):
+        digest.update(path.name.encode() + path.read_bytes())
+    return digest.hexdigest()
+
+
 class Journal:
     """What is known of one file to write, and a place to add to it; `run` names the run that adds."""
 
@@ -52,7 +64,7 @@ class Journal:
         for array in arrays:
             np.save(self._arrays, array, allow_pickle=False)
         self._arrays.flush()
-        line = {"key": key, "offset": offset, "count": len(arrays), "record": record}
+        line = {"version": version(), "key": key, "offset": offset, "count": len(arrays), "record": record}
         self._lines.write(json.dumps(line) + "\n")
         self._lines.flush()
         self.entries[key] = Entry(record, Path(self._arrays.name), offset, len(arrays))
@@ -70,7 +82,7 @@ class Journal:
         for path in sorted(self.folder.glob("*.jsonl")):
             for line in _whole_lines(path):
                 earlier = not path.name.startswith(f"{self._run}-")
-                if line["count"] or not earlier:
+                if line.get("version") == version() and (line["count"] or not earlier):
                     where = path.with_suffix(".bin"), line["offset"], line["count"]
                     entries[line["key"]] = Entry(line["record"], *where, earlier)
         return entries
@@ -85,7 +97,8 @@ def load(entry: Entry) -> list[np.ndarray]:
 
 def write_done(target: Path, key: str, run: str, records: list[dict]) -> None:
     """The file is written, or cannot be: what became of it, for a later run with the same key or for the same run."""
-    write_atomically(folder_of(target) / "done.json", json.dumps({"key": key, "run": run, "records": records}))
+    done = {"version": version(), "key": key, "run": run, "records": records}
+    write_atomically(folder_of(target) / "done.json", json.dumps(done))
 
 
 def read_done(target: Path, key: str, run: str) -> list[dict] | None:
@@ -98,7 +111,7 @@ def read_done(target: Path, key: str, run: str) -> list[dict] | None:
     if done["run"] == run:
         return done["records"]
     failed = any(record["status"] == "failed" for record in done["records"])
-    if failed or done["key"] != key or not target.exists():
+    if failed or (done.get("version"), done["key"]) != (version(), key) or not target.exists():
         return None
     return [record | {"earlier": True} for record in done["records"]]
 
