@@ -72,7 +72,7 @@ class TESSERA_OT_unlink(bpy.types.Operator):
 
 def _poll(cls, context: bpy.types.Context) -> bool:
     if context.mode != "OBJECT" or not is_linked(context.object):
-        cls.poll_message_set("Only in Object Mode, for a mesh that was made with Keep Linked")
+        cls.poll_message_set("Only in Object Mode, for a mesh of this file that was made with Keep Linked")
         return False
     return True
 
