@@ -42,7 +42,7 @@ class Record:
 
     @property
     def name(self) -> str:
-        """For the user: the file, without its folder, and the curve; of an SVG file's curves all have the same names."""
+        """For the user: the file without its folder, and the curve, as curves of SVG files have the same names."""
         return f"{Path(self.input).name}: {self.object}" if self.object else self.input
 
     @property
