@@ -71,7 +71,7 @@ def mesh_again(obj: bpy.types.Object) -> bool:
     from . import meshing, results  # here, so that enabling the add-on does not load the mesher
 
     if not source_is_there(obj):
-        obj.tessera.message = "Its source is no longer in the scene"
+        obj.tessera.message = "Its source is in no scene"
         return False
     settings, depsgraph = linked_settings(obj), bpy.context.evaluated_depsgraph_get()
     try:

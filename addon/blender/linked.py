@@ -108,8 +108,10 @@ def linked_settings(obj: bpy.types.Object) -> Settings:
 
 
 def is_linked(obj: bpy.types.Object | None) -> bool:
-    """Whether an object is a mesh that is kept linked to a source."""
-    return obj is not None and obj.type == "MESH" and obj.tessera.source is not None
+    """Whether an object is a mesh that is kept linked to a source, and can be changed: not in another file."""
+    if obj is None or obj.type != "MESH" or not obj.is_editable or not obj.data.is_editable:
+        return False
+    return obj.tessera.source is not None
 
 
 def source_is_there(obj: bpy.types.Object) -> bool:

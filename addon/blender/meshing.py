@@ -14,13 +14,14 @@ from .. import tessera
 from ..tessera import networks
 from ..tessera.counting import expected_edge_length, mesh_to_count
 from ..tessera.steps import Steps, finish, within
+from .errors import OutlineError
 from .failures import Failure
 from .outline import Outline
 from .preferences import execution
 from .progress import named
 from .reading import read_outlines
 from .settings import EDGES_ALONG, NEAR_SHARE, Settings
-from .targets import Targets, read_targets, sizing_of
+from .targets import Targets, read_targets, sizing_of, unnamed
 from .writing import Piece
 
 __all__ = ["Failure", "Meshed", "Task", "finish", "mesh_all", "mesh_object", "read_task"]
@@ -62,18 +63,28 @@ class Meshed:
 
     @property
     def warnings(self) -> list[str]:
-        """Of all pieces, each once."""
-        return list(dict.fromkeys(warning for report in self.reports for warning in report.warnings))
+        """Of the settings, and of all pieces, each once."""
+        of_pieces = dict.fromkeys(warning for report in self.reports for warning in report.warnings)
+        return unnamed(self.task.settings) + list(of_pieces)
 
 
 def read_task(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, settings: Settings) -> Task:
     """Read what is to be meshed. Raises Failure."""
     try:
+        if settings.result == "REPLACE":
+            _check_editable(obj)
         outlines = tuple(read_outlines(obj, depsgraph))
         targets = tuple(read_targets(obj, outline, settings, depsgraph) for outline in outlines)
     except tessera.ContourError as error:
         raise Failure(obj, error) from error
     return Task(obj, outlines, targets, settings)
+
+
+def _check_editable(obj: bpy.types.Object) -> None:
+    """Raise OutlineError if the mesh cannot take the object's place."""
+    if not obj.is_editable:
+        message = "It comes from a library and cannot be replaced. Make it local, or set Result to New Objects."
+        raise OutlineError("library", message)
 
 
 def mesh_task(task: Task) -> Steps[Meshed]:
@@ -85,8 +96,8 @@ def mesh_task(task: Task) -> Steps[Meshed]:
     for number, (outline, targets) in enumerate(zip(task.outlines, task.targets, strict=True)):
         first, last = number / len(task.outlines), (number + 1) / len(task.outlines)
         outline = _with_vertices(outline, task.settings, edge_length, counts[number])
-        steps = _mesh_outline(outline, targets, task.settings, edge_length, counts[number])
         try:
+            steps = _mesh_outline(outline, targets, task.settings, edge_length, counts[number])
             made = yield from within(steps, first, last)
             _check_rounding(outline, made)
         except tessera.ContourError as error:

@@ -14,7 +14,7 @@ from .plane import Plane, fit_plane
 if TYPE_CHECKING:
     import bpy
 
-NOTHING = "There is no outline in it. Draw or type something first."
+NOTHING = "There is no outline in it, or none that its modifiers leave. Draw or type something first."
 
 
 @dataclass(frozen=True)

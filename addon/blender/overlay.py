@@ -27,7 +27,7 @@ def colours(quality: np.ndarray) -> np.ndarray:
 
 def draw_legend(layout: bpy.types.UILayout) -> None:
     """What the colours mean, in words: the panel has no colours of its own to show."""
-    layout.label(text=f"From red, {_AT[0]:g} or less, to green, {_AT[-1]:g}")
+    layout.label(text=f"From red, {_AT[0]:g} or less, to blue-green, {_AT[-1]:g}")
 
 
 def coloured_triangles(mesh: bpy.types.Mesh) -> tuple[np.ndarray, np.ndarray] | None:
@@ -110,7 +110,7 @@ def register() -> None:
     bpy.types.WindowManager.tessera_show_quality = bpy.props.BoolProperty(
         name="Colour by Quality",
         description="Colour the triangles of all meshes that Tessera has made by their quality, from red (poor) to "
-        "green (equilateral), in all 3D views",
+        "blue-green (equilateral), in all 3D views",
         options={"SKIP_SAVE"},
         update=_redraw,
     )

@@ -103,5 +103,6 @@ def _metric(world_axes: np.ndarray) -> np.ndarray:
     _, metric = np.linalg.qr(world_axes)
     metric = metric * np.sign(np.diagonal(metric))[:, None]
     if abs(metric[1, 1]) <= 1e-12 * np.abs(metric).max() or abs(metric[0, 0]) <= 1e-12 * np.abs(metric).max():
-        raise OutlineError("zero-area", "Its scale is zero in its own plane. Give it a scale.")
+        message = "Its scale is zero, or nothing beside the other, along an axis of its plane. Give it one."
+        raise OutlineError("zero-area", message)
     return metric

@@ -61,7 +61,7 @@ class TESSERA_preferences(bpy.types.AddonPreferences):
         box.label(text="Results")
         box.prop(self, "collection")
         box = layout.box()
-        box.label(text="What Mesh by Tessera starts with, until it was used once in a session")
+        box.label(text="What Mesh Curve by Tessera starts with, until it was used once in a session")
         draw_settings(box, self.defaults)
 
 

@@ -31,16 +31,29 @@ class Targets:
 def read_targets(
     obj: bpy.types.Object, outline: Outline, settings: Settings, depsgraph: bpy.types.Depsgraph
 ) -> Targets:
-    """Read what the settings name. Raises ContourError "sizing" where there is no such object or weight."""
+    """Read what the settings name. Raises ContourError "sizing" where there is no such object or weight.
+
+    Nothing is named between switching a sizing on and choosing what it refers to: that is `unnamed`, and no error.
+    """
     weights = near = None
-    if settings.use_weight:
+    if settings.use_weight and settings.weight_name:
         points, values = weighted_points(obj, settings.weight_name, depsgraph)
         weights = outline.plane.flatten(points), values
-    if settings.use_object:
+    if settings.use_object and settings.object_name:
         ends = _near_ends(settings.object_name, depsgraph)
         into = np.array(obj.matrix_world.inverted_safe(), dtype=np.float64)
         near = tuple(outline.plane.flatten(points @ into[:3, :3].T + into[:3, 3]) for points in ends)
     return Targets(weights, near)
+
+
+def unnamed(settings: Settings) -> list[str]:
+    """A sentence for each sizing that is switched on and has nothing to refer to yet."""
+    missing = []
+    if settings.use_weight and not settings.weight_name:
+        missing.append("By Weight has no effect yet: give the name of a vertex group or an attribute")
+    if settings.use_object and not settings.object_name:
+        missing.append("By Object has no effect yet: choose the object")
+    return missing
 
 
 def _near_ends(name: str, depsgraph: bpy.types.Depsgraph) -> tuple[np.ndarray, np.ndarray]:

@@ -18,7 +18,8 @@ from .steps import Progress, Steps
 from .stopwatch import Stopwatch
 
 _PADDED = 0, 8, 16  # sizes that rings are padded to
-_GAIN = 2e-4  # in worst and mean quality added: less is not worth a move
+# In worst and mean quality added: less is not worth a move, and less is no reason to look at the neighbours again.
+_GAIN, _SPREADS = 2e-4, 1e-3
 
 
 def relax(
@@ -63,7 +64,7 @@ def _with_neighbours(chosen: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 
 
 def _pass(vertices: np.ndarray, sets: list[Stars], disturbed: np.ndarray) -> np.ndarray:
-    """Move vertices (n, 2), in place, that are or are beside what is disturbed or moves; returns which moved (n,)."""
+    """Move vertices (n, 2), in place, that are or are beside what is disturbed or moves; returns which gained (n,)."""
     moved = np.zeros(len(vertices), dtype=bool)
     for independent in sets:
         around = disturbed[independent.ring] | moved[independent.ring]
@@ -72,13 +73,14 @@ def _pass(vertices: np.ndarray, sets: list[Stars], disturbed: np.ndarray) -> np.
             rows = np.flatnonzero((stars.n_ring > low) & (stars.n_ring <= high))
             if len(rows):
                 centre = stars.centre[rows]
-                places, better = _better_places(vertices, stars.rows(rows), high)
-                vertices[centre[better]], moved[centre] = places[better], better
+                places, gain = _better_places(vertices, stars.rows(rows), high)
+                better = gain > _GAIN
+                vertices[centre[better]], moved[centre] = places[better], gain > _SPREADS
     return moved
 
 
 def _better_places(vertices: np.ndarray, stars: Stars, size: int) -> tuple[np.ndarray, np.ndarray]:
-    """New places (S, 2) of the stars' centres, and whether each is better than the old one; size: to pad rings to."""
+    """New places (S, 2) of the stars' centres, and what each gains, 0 where it may not go; size: to pad rings to."""
     old, n = vertices[stars.centre].T, stars.n_ring
     # The last vertex before the first, and the first in all that is left.
     ring = np.tile(stars.ring[0], (size + 2, 1))
@@ -90,8 +92,8 @@ def _better_places(vertices: np.ndarray, stars: Stars, size: int) -> tuple[np.nd
     around /= scale
     move = networks.centre_stars(around, n)
     before, after = _star_quality(around, n), _star_quality(around - move[:, None], n)
-    better = after.sum(axis=0) > before.sum(axis=0) + _GAIN
-    return (old + scale * move).T, better & (after[0] > np.minimum(before[0], 0.3))
+    gain = after.sum(axis=0) - before.sum(axis=0)
+    return (old + scale * move).T, np.where(after[0] > np.minimum(before[0], 0.3), gain, 0)
 
 
 def _star_quality(around: np.ndarray, n_ring: np.ndarray) -> np.ndarray:

@@ -59,6 +59,13 @@ def test_curves_that_are_hidden_are_left_alone_and_open_ones_are_passed_over(tmp
     assert meshes() == ["A Mesh"]
 
 
+def test_a_line_names_the_file_and_the_curve(tmp_path, capsys):
+    poly_curve(SQUARE, name="Tile")
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "floor.blend"))
+    assert run(tmp_path / "out.blend", str(tmp_path / "floor.blend")) == 0
+    assert "\nfloor.blend: Tile: " in capsys.readouterr().out
+
+
 def test_a_curve_that_fails_does_not_keep_the_others_from_being_meshed(tmp_path, capsys):
     for name, loop in (("A", SQUARE), ("Bow tie", BOW_TIE), ("C", SQUARE)):
         poly_curve(loop, name=name)

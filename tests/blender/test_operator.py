@@ -179,6 +179,20 @@ def test_names_that_are_not_there_are_one_clear_report():
         bpy.ops.tessera.mesh_curve(use_weight=True, weight_name="x")
 
 
+def test_a_sizing_without_a_name_has_no_effect_yet_and_says_so(capfd):
+    poly_curve(SQUARE, name="Square")
+    plain, waiting = run(edge_length=0.4), run(edge_length=0.4, use_object=True, use_weight=True)
+    assert len(waiting[0].data.polygons) == len(plain[0].data.polygons)
+    said = capfd.readouterr()
+    assert "By Object has no effect yet" in said.out + said.err and "By Weight has no effect yet" in said.out + said.err
+
+
+def test_a_setting_that_is_no_number_is_one_clear_report():
+    poly_curve(SQUARE, name="Square")
+    with pytest.raises(RuntimeError, match=r"^Error: Curve 'Square': .*must be a positive number"):
+        bpy.ops.tessera.mesh_curve(use_curvature=True, curvature_ratio=float("nan"))
+
+
 def test_smoothing_and_flips_better_the_triangles():
     poly_curve(star())
     mean = []

@@ -23,7 +23,7 @@ def show(record: Record) -> None:
         return
     print(record.line, flush=True)
     for warning in record.warnings:
-        print(f"{record.object}: warning: {warning}", file=sys.stderr, flush=True)
+        print(f"{record.name}: warning: {warning}", file=sys.stderr, flush=True)
 
 
 class Progress:

@@ -41,9 +41,14 @@ class Record:
     earlier: bool = False
 
     @property
+    def name(self) -> str:
+        """For the user: the file without its folder, and the curve, as curves of SVG files have the same names."""
+        return f"{Path(self.input).name}: {self.object}" if self.object else self.input
+
+    @property
     def line(self) -> str:
         """For the user, one line."""
-        name = self.object or self.input
+        name = self.name
         if self.status == "meshed":
             quality = f"q_worst {self.q_worst:.3f}, q_mean {self.q_mean:.3f}"
             time = "meshed earlier" if self.earlier else f"{self.seconds:.2f} s"

@@ -33,7 +33,8 @@ class TESSERA_OT_mesh_again(Stepping, bpy.types.Operator):
         self._targets = _targets(context)
         for obj in self._targets:
             if not source_is_there(obj):
-                raise Refusal(f"Mesh '{obj.name}': its source is no longer in the scene. Undo its deletion, or unlink")
+                message = "its source is in no scene. Link that into one, or undo its deletion, or unlink the mesh"
+                raise Refusal(f"Mesh '{obj.name}': {message}")
         sources = [obj.tessera.source for obj in self._targets]
         settings = [linked_settings(obj) for obj in self._targets]
         return meshing.mesh_all(sources, context.evaluated_depsgraph_get(), settings)
@@ -72,7 +73,7 @@ class TESSERA_OT_unlink(bpy.types.Operator):
 
 def _poll(cls, context: bpy.types.Context) -> bool:
     if context.mode != "OBJECT" or not is_linked(context.object):
-        cls.poll_message_set("Only in Object Mode, for a mesh that was made with Keep Linked")
+        cls.poll_message_set("Only in Object Mode, for a mesh of this file that was made with Keep Linked")
         return False
     return True
 

@@ -32,7 +32,7 @@ class TESSERA_OT_select_place(bpy.types.Operator):
             obj.select_set(True)
             context.view_layer.objects.active = obj
         context.scene.cursor.location = self.place
-        if obj.type in {"CURVE", "MESH"}:
+        if obj.type in {"CURVE", "MESH"} and obj.is_editable and obj.data.is_editable:
             at = np.array(obj.matrix_world.inverted_safe() @ Vector(self.place))
             if obj.type == "CURVE":
                 bpy.ops.object.mode_set(mode="EDIT")
