@@ -19,7 +19,7 @@ MODULE = "benchmarks.domains.growth"
 SIZES = (1_000, 3_000, 10_000, 30_000, 100_000, 300_000, 1_000_000)
 LARGE = 100_000  # triangles of the circle of the goals
 ASYMPTOTIC = 10_000  # from which the time of a call is no longer that of its overhead
-ROUNDS, REPEATED = 3, 30_000  # rounds of circles of up to so many triangles, of which seconds are the median
+ROUNDS, REPEATED = 3, LARGE  # rounds of circles of up to so many triangles, of which seconds are the median
 
 
 @dataclass(frozen=True)
