@@ -2,7 +2,8 @@
 
 Every edge off the boundary that is longer than the sizing function wants is split into at most five segments, each as
 long as it is wanted there; every element with a split edge becomes a sub-contour, meshed by the scheme at its own mean
-edge length; NN2 recomputes the places of the inner vertices; until no edge is split. (The listing's condition to split,
+edge length, or four elements where all three are halved; NN2 recomputes the places of the inner vertices; until no edge
+is split. (The listing's condition to split,
 ``|l_e - l_s| < eps``, is a misprint.)
 """
 
