@@ -3,8 +3,7 @@
 Every edge off the boundary that is longer than the sizing function wants is split into at most five segments, each as
 long as it is wanted there; every element with a split edge becomes a sub-contour, meshed by the scheme at its own mean
 edge length, or four elements where all three are halved; NN2 recomputes the places of the inner vertices; until no edge
-is split. (The listing's condition to split,
-``|l_e - l_s| < eps``, is a misprint.)
+is split. (The listing's condition to split, ``|l_e - l_s| < eps``, is a misprint.)
 """
 
 from __future__ import annotations
@@ -103,14 +102,12 @@ def refine(
             arcs, bad = None, _unfit(points, cells, np.append(number, places))
             failed = np.unique(domain[parent[bad]])
             split &= ~np.isin(domain[parent], failed)
-        halved = split & find_halved(points, cells, len(vertices))
-        contours, rest = cells[split & ~halved, :LARGEST_CONTOUR], np.flatnonzero(split & ~halved)
-        meshing = mesh_cells(points, contours, mean_edge_lengths(points, contours), watch)
-        vertices, new, owner, fell = yield from within(meshing, start, end)
+        meshing = _mesh_split(points, cells, split, len(vertices), watch)
+        vertices, new, row, fell = yield from within(meshing, start, end)
         number = np.concatenate([number, places, np.full(len(vertices) - len(points), -1)])
-        np.add.at(fallbacks, parent[rest], fell)
-        triangles = np.concatenate([triangles[~split], four_elements(cells[halved]), new])
-        parent = np.concatenate([parent[~split], np.repeat(parent[halved], 4), parent[rest][owner]])
+        np.add.at(fallbacks, parent, fell)
+        triangles = np.concatenate([triangles[~split], new])
+        parent = np.concatenate([parent[~split], parent[row]])
     return Refined(vertices, triangles, parent, fallbacks, number, failed)
 
 
@@ -143,6 +140,22 @@ def _unfit(points: np.ndarray, cells: np.ndarray, number: np.ndarray) -> np.ndar
     pairs = crossing_pairs(points[corners], points[corners[after]], row)
     reversed_ = areas(points[cells[rows]], count) <= 0
     return np.concatenate([row[pairs[:, 0]], rows[reversed_ | (count > LARGEST_CONTOUR)]])
+
+
+def _mesh_split(
+    points: np.ndarray, cells: np.ndarray, split: np.ndarray, first: int, watch: Stopwatch
+) -> Steps[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
+    """Mesh the split ones (m,) of the sub-contours (m, N); first: from which points are counted that were inserted.
+
+    Returns vertices (n, 2), the points first; triangles (t, 3); the row of each (t,); fallbacks of each row (m,).
+    """
+    halved = split & find_halved(points, cells, first)
+    rest = np.flatnonzero(split & ~halved)
+    contours, fallbacks = cells[rest, :LARGEST_CONTOUR], np.zeros(len(cells), dtype=np.int64)
+    lengths = mean_edge_lengths(points, contours)
+    vertices, triangles, owner, fallbacks[rest] = yield from mesh_cells(points, contours, lengths, watch)
+    triangles = np.concatenate([four_elements(cells[halved]), triangles])
+    return vertices, triangles, np.concatenate([np.repeat(np.flatnonzero(halved), 4), rest[owner]]), fallbacks
 
 
 def _segments(
