@@ -11,8 +11,19 @@ from tessera import paper, paper_placement
 from tessera.cavity import is_inside
 from tessera.roles import SHIPPED
 from tests.validity import check_mesh
-from training import configuration, contours
-from training.paper import batches, data, generate, networks, sampling, settings, train
+from training import configuration, contours, tables
+from training.paper import (
+    batches,
+    claims,
+    data,
+    fitting,
+    generate,
+    markdown,
+    networks,
+    sampling,
+    settings,
+    train,
+)
 from training.paper.__main__ import everything
 
 ANSWERS = {"reproduced", "better", "worse", "not tested"}
@@ -40,8 +51,11 @@ meshes = 20
 groups = {{ 6 = [1, 2, 3, 4], 10 = [1, 2, 4] }}
 [nn3]
 steps = 20
+named_steps = 30
 seed = 3
 meshes = 4
+references = 10
+share = 0.5
 groups = {{ 6 = [1, 2, 3, 4], 10 = [2, 4] }}
 [nn3_star]
 steps = 10
@@ -58,6 +72,11 @@ fewest = 1
 steps = 10
 seed = 5
 contours = 5
+[mixture]
+n_contour = 6
+n_inner = 4
+steps = 10
+seed = 8
 [learning]
 shares = [0.5, 1.0]
 seed = 6
@@ -187,6 +206,48 @@ def test_random_groups_keep_their_distances():
     groups = sampling.random_groups(np.random.default_rng(6), places, 4, 50, 0.06)
     away = np.linalg.norm(groups[:, :, None] - groups[:, None], axis=-1) + 10 * np.eye(4)
     assert groups.shape == (50, 4, 2) and away.min() >= 0.06
+
+
+def test_shuffled_tables_are_those_of_the_shuffled_vertices():
+    drawn = contours.transformed_sector(np.random.default_rng(5), 6)[None].repeat(4, axis=0), np.full(4, 0.8)
+    found = sampling.random_tables(np.random.default_rng(6), *drawn, 3)
+    points, table = torch.as_tensor(found["points"]), torch.as_tensor(found["table"]).float()
+    moved, theirs = batches.shuffled(points, table, torch.Generator().manual_seed(7))
+    assert torch.equal(moved[:, :6], points[:, :6]) and not torch.equal(moved, points)
+    own = tables.connection_tables(moved.double().numpy(), np.full(len(moved), 6), np.full(len(moved), 3))
+    np.testing.assert_allclose(theirs, own[..., 0], atol=1e-3)
+
+
+def test_a_batch_has_the_share_of_the_references_vertices():
+    one, other = ({"points": np.full((5, 7, 2), v, np.float32), "table": np.zeros((5, 6, 7))} for v in (1.0, 2.0))
+    given, wanted = batches.from_tables([batches.mixed(one, other, share) for share in (0.25, 0.5)])(torch.Generator())
+    assert given.shape == (2, fitting.BATCH, 14) and wanted.shape == (2, fitting.BATCH, 42)
+    assert (given[:, :, 0] == 2).float().mean(dim=1).tolist() == [0.25, 0.5]
+    none = {name: array[:0] for name, array in other.items()}
+    assert batches.mixed(one, none, 0.5) == [(one, fitting.BATCH)]
+
+
+def test_batch_normalisation_of_a_stack_is_each_networks_own():
+    layer, rows = networks.BatchNorm(3, 5), torch.randn(3, 64, 5) * torch.tensor([1.0, 2.0, 3.0])[:, None, None]
+    found = layer.train()(rows)
+    torch.testing.assert_close(found.mean(dim=1), torch.zeros(3, 5), atol=1e-5, rtol=0)
+    torch.testing.assert_close(found.var(dim=1, correction=0), torch.ones(3, 5), atol=1e-3, rtol=0)
+    torch.testing.assert_close(layer.mean, 0.1 * rows.mean(dim=1, keepdim=True))
+    assert (layer.eval()(rows) - found).abs().max() > 0.1
+
+
+def test_the_element_in_a_sharp_tail_is_shown_and_does_not_decide():
+    row = {"name": "wing", "paper": (0.7, 0.9), "q_worst": 0.8, "q_mean": 0.95, "q_left_out": 0.4, "triangles": 9}
+    worst, mean = claims._domains([row])
+    assert (worst.answer, mean.answer) == ("better", "better")
+    assert worst.shipped == "0.80 (0.40 with the element in the sharp tail)" and mean.shipped == "0.95"
+    assert "0.80, 0.95 | 0.40" in markdown.domain_table([row])
+
+
+def test_epochs_are_those_of_the_exported_networks(tiny):
+    folder = tiny["folders"]["models"]
+    assert markdown.epochs(folder / "nn1_6.onnx") == pytest.approx(40 * fitting.BATCH / (60 * 3))
+    assert markdown.epochs(folder / "nn1_5.onnx") is None
 
 
 def test_shards_are_reproducible_and_hold_every_mesh():

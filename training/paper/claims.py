@@ -19,7 +19,6 @@ NAMED = {stage.figure: stage.paper for stage in STAGES if stage.paper}  # ē_wor
 COUNT_ERRORS = {(16, 0.2): 1.5, (14, 0.2): 1.3, (14, 1.0): 0.2}  # Fig. 19, by N_C and l_s
 # Fig. 26: the confidence level that the paper compares at, how much better, and with how many fewer samples.
 ADAPTIVE = {1: (96, 27, 35), 2: (90, 18, 22), 4: (90, 27, 17)}
-TABLE_2 = {"Circle": (0.88, 0.97), "Airfoil": (0.69, 0.90), "Contour with hole": (0.66, 0.85)}
 
 
 @dataclass(frozen=True)
@@ -172,12 +171,16 @@ def _adaptive(rows: list[dict]) -> Iterable[Claim]:
 
 
 def _domains(rows: list[dict]) -> Iterable[Claim]:
+    """q_worst is judged without the element that a sharp tail forces on every mesher, and shown with it."""
     for row in rows:
-        for name, paper in zip(("q_worst", "q_mean"), TABLE_2[row["name"]], strict=True):
+        for name, paper in zip(("q_worst", "q_mean"), row["paper"], strict=True):
             close = abs(row[name] - paper) <= 0.02
             verdict = "reproduced" if close else "better" if row[name] > paper else "worse"
-            what = f"Table 2: {row['name'].lower()}, {name} (by the shipped networks)"
-            yield Claim(what, f"{paper:.2f}", "—", verdict, f"{row[name]:.2f}")
+            shown = f"{row[name]:.2f}"
+            if name == "q_worst" and row["q_left_out"] is not None:
+                shown += f" ({min(row['q_left_out'], row['q_worst']):.2f} with the element in the sharp tail)"
+            what = f"Table 2: {row['name']}, {name} (by the shipped networks)"
+            yield Claim(what, f"{paper:.2f}", "—", verdict, shown)
 
 
 def _speed(rows: list[dict]) -> Claim:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 
 import numpy as np
+import torch
 
 from tessera import paper
 from tessera.roles import SHIPPED, Roles
@@ -13,6 +15,7 @@ from tessera.roles import SHIPPED, Roles
 from ..evaluate.meshes import Meshes, are_valid, measure
 from ..evaluate.sets import Contours
 from .data import Group, Population, load, sample_size
+from .networks import Network
 
 PAPER, OURS = "the paper's networks", "the shipped networks"
 
@@ -20,6 +23,18 @@ PAPER, OURS = "the paper's networks", "the shipped networks"
 def compared(config: dict) -> dict[str, Roles]:
     """The networks that every experiment asks: the paper's, from the folder they were exported to, and the shipped."""
     return {PAPER: paper.load("paper", config["folders"]["models"]), OURS: SHIPPED}
+
+
+def as_roles(net: Network, n: int, m: int, by_row: bool) -> Roles:
+    """The shipped networks with a NN3, or a NN3* (by_row), for the group (n, m) in place of theirs."""
+
+    def ask(n_contour: int, n_inner: int, given: np.ndarray) -> np.ndarray | None:
+        if (n_contour, n_inner) != (n, m):
+            return None
+        with torch.no_grad():
+            return net(torch.as_tensor(given, dtype=torch.float32)[None])[0].numpy()
+
+    return Roles(SHIPPED.count, SHIPPED.place, partial(paper.rate, ask, by_row))
 
 
 def test_group(config: dict, trained: Population, tested: Population, n_inner: int) -> Group:
