@@ -51,7 +51,7 @@ meshes = 20
 groups = {{ 6 = [1, 2, 3, 4], 10 = [1, 2, 4] }}
 [nn3]
 steps = 20
-named_steps = 30
+longer = {{ 10_4 = 30 }}
 seed = 3
 meshes = 4
 references = 10

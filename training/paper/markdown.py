@@ -121,21 +121,21 @@ def exclusion_table(rows: list[dict]) -> str:
     return table(["radius of exclusion", *names], [["mean of the groups' ē_worst, %, training meshes", *means]])
 
 
-def mixture_table(rows: list[dict]) -> str:
+def mixture_part(found: dict) -> str:
     """NN3's ē_worst by the share of the reference's vertices that it learns from."""
     lines = []
-    for row in rows:
+    for row in found["shares"]:
         cells = (
             "—" if of["worst"] is None else f"{of['worst']:+.1f} ± {of['worst_spread']:.1f}"
             for of in row["vertices"].values()
         )
         lines.append([f"{100 * row['share']:.0f} %", *cells])
-    names = [f"on {name} vertices: ē_worst, %" for name in rows[0]["vertices"]]
-    first = "of N_C {n}, N_I {m}, {steps:,} batches: the reference's vertices among the examples".format(**rows[0])
-    return table([first, *names], lines)
+    names = [f"on {name} vertices: ē_worst, %" for name in found["shares"][0]["vertices"]]
+    text = texts.MIXTURE.format(one_in=round(1 / found["shares"][0]["share"]), **found)
+    return text + "\n\n" + table(["share of the reference's vertices", *names], lines)
 
 
-def stage_parts(rows: list[dict], exclusion: list[dict], mixture: list[dict]) -> list[str]:
+def stage_parts(rows: list[dict], exclusion: list[dict], mixture: dict) -> list[str]:
     """Figs. 22, 24, 25 and 27, each with its sentence, picture and table of groups."""
     parts = []
     for figure, (title, text) in texts.STAGES.items():
@@ -146,7 +146,7 @@ def stage_parts(rows: list[dict], exclusion: list[dict], mixture: list[dict]) ->
         if figure == 22:
             parts.append(exclusion_table(exclusion))
         if figure == 25:
-            parts.append(mixture_table(mixture))
+            parts.append(mixture_part(mixture))
         parts += [f"![Fig. {figure}](reproduction/fig_{figure}.png)", stage_table(own, figure)]
     return parts
 

@@ -32,7 +32,10 @@ def main() -> None:
 
 
 def compare_shares(config: dict) -> None:
-    """ē_worst of NN3 alone by share, on the reference's vertices and on those that NN2 places, of the test group."""
+    """ē_worst of NN3 alone by share, on the reference's vertices and on those that NN2 places, of the test group.
+
+    Beside it, of the tables that are learnt from, the mean of what each facet's best entry is.
+    """
     torch.set_num_threads(1)
     wanted = config["mixture"]
     n, m = wanted["n_contour"], wanted["n_inner"]
@@ -56,9 +59,11 @@ def compare_shares(config: dict) -> None:
     for number, share in enumerate(shares):
         role = as_roles(one_of(net.state_dict(), nn3(n, m), number), n, m, by_row=False)
         of = {name: given_connected(role, part) for name, part in groups.items()}
-        rows.append({"n": n, "m": m, "steps": wanted["steps"], "share": share, "vertices": of})
+        rows.append({"share": share, "vertices": of})
         print(f"share {share:.2f}: " + ", ".join(f"{name} {part['worst']} %" for name, part in of.items()), flush=True)
-    write(config, "mixture", rows)
+    best = [float(part["table"].max(axis=2).mean(dtype=np.float64)) for part in found]
+    best = dict(zip(("random", "reference"), best, strict=True))
+    write(config, "mixture", {"n": n, "m": m, "steps": wanted["steps"], "best": best, "shares": rows})
 
 
 def placed(config: dict, group: Group) -> Group:

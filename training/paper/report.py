@@ -37,9 +37,8 @@ def write_report(config: dict) -> Path:
     draw(folder / "reproduction", config, found)
     parts = ["# The paper, reproduced", texts.introduction(config, reference.VERSION)]
     parts += ["## The paper's claims", markdown.claim_table(claims(found)), "## Populations and epochs"]
-    sizes = {role: config[role]["meshes"] for role in ("nn2", "nn3")}
     parts += [
-        texts.POPULATIONS.format(**sizes),
+        texts.POPULATIONS.format(**config),
         markdown.population_table(config, found),
         _picture("Figs. 17 and 18", "populations"),
     ]

@@ -8,12 +8,19 @@ PAPER_POPULATIONS = {4: "6,000", 6: "12,000", 8: "24,000"}
 
 POPULATIONS = """The paper's populations grow nearly exponentially; it gives numbers for 4, 6 and 8 edges only. Each
 contour is meshed at nine target edge lengths, and each mesh is an example for NN1 and, by its number of inner vertices,
-for the NN2 and NN3 of its group: NN2 learns from at most {nn2:,} meshes of a group, NN3 from {nn3:,}, each with the
-paper's 50 (N_I up to 4), 100 (5 to 8) or 200 random groups of inner vertices. An epoch is all examples of a network
-once; a mesh is 100 examples for NN2, a patch of the grid each. Numbers in brackets are the paper's epochs. With 4 edges
-Gmsh inserts none or one vertex almost always, as long frozen edges win over the target, so groups that the paper has
-with 3 and 4 vertices hardly exist here: their NN3 learn from random vertices alone, and are not tested. With 16 edges
-and l_s 0.2 it inserts about 50, which the paper's figures do not reach either."""
+for the NN2 and NN3 of its group. NN2 learns from at most {nn2[meshes]:,} meshes of a group; NN3 from the vertices of at
+most {nn3[references]:,}, which are half of each batch (Fig. 25), and from random groups of inner vertices in
+{nn3[meshes]:,} of its contours, in each the paper's 50 (N_I up to 4), 100 (5 to 8) or 200. An epoch is all examples of
+a network once; a mesh is 100 examples for NN2, a patch of the grid each. Numbers in brackets are the paper's epochs.
+With 4 edges Gmsh inserts none or one vertex almost always, as long frozen edges win over the target, so groups that the
+paper has with 3 and 4 vertices hardly exist here: their NN3 learn from random vertices alone, and are not tested. With
+16 edges and l_s 0.2 it inserts about 50, which the paper's figures do not reach either."""
+
+MIXTURE = """With the paper's share, of N_C {n} and N_I {m} one example in {one_in}, NN3 learns tables of bad meshes: a
+facet's best entry is {best[random]:.2f} with random vertices, and {best[reference]:.2f} with Gmsh's, on average. The
+paper's 5000 epochs show each of Gmsh's meshes 5000 times all the same; to show them a few hundred times here, they are
+half of each batch. Three NN3 of this group after {steps:,} batches, connecting Gmsh's vertices and those that NN2
+places:"""
 
 COUNTS = """NN1 against Gmsh's count. The paper's numbers at l_s = 0.2 belong to another setting of its mesher's size:
 its standard deviation of N_I (in brackets here) is 5.2 with 16 edges and 1.4 with 4; here it is larger with 16 and

@@ -16,7 +16,6 @@ from tessera.paper_placement import GRID
 from ..provenance import code_version
 from . import settings
 from .batches import count_rows, from_groups, from_rows, from_tables, mixed
-from .claims import NAMED
 from .data import Group, Population, load
 from .fitting import BATCH, fit
 from .networks import Network, nn1, nn2, nn3
@@ -84,7 +83,7 @@ def train_nn3(config: dict, population: Population, n_inner: int) -> None:
         lambda: nn3(n, n_inner),
         lambda: (from_tables([mixed(*found, wanted["share"])]), [sum(len(part["points"]) for part in found)]),
         {"numbers": [n_inner]},
-        wanted["named_steps"] if (n, n_inner) in NAMED[25] else wanted["steps"],
+        wanted["longer"].get(f"{n}_{n_inner}", wanted["steps"]),
     )
 
 
