@@ -218,6 +218,23 @@ def test_shuffled_tables_are_those_of_the_shuffled_vertices():
     np.testing.assert_allclose(theirs, own[..., 0], atol=1e-3)
 
 
+@pytest.mark.parametrize("role", ["nn1", "nn3"])
+def test_training_goes_on_from_its_checkpoint_as_if_never_stopped(tmp_path, role):
+    rng = np.random.default_rng(9)
+    make = {"nn1": lambda: networks.nn1(4), "nn3": lambda: networks.nn3(4, 1)}[role]
+    rows = [array.astype(np.float32) for array in (rng.random((50, make().inputs)), rng.random((50, make().outputs)))]
+    draw, weights = batches.from_rows([rows]), []
+    for stops in ([6], [2, 6]):
+        for steps in stops:
+            torch.manual_seed(3)
+            net, file = make(), tmp_path / f"{role}-{len(stops)}.pt"
+            curve = fitting.fit(net, draw, steps, role, file, {"seed": 1})
+        assert curve[-1][0] == 6
+        weights.append(net.state_dict())
+    for name, value in weights[0].items():
+        assert torch.equal(value, weights[1][name]), name
+
+
 def test_a_batch_has_the_share_of_the_references_vertices():
     one, other = ({"points": np.full((5, 7, 2), v, np.float32), "table": np.zeros((5, 6, 7))} for v in (1.0, 2.0))
     given, wanted = batches.from_tables([batches.mixed(one, other, share) for share in (0.25, 0.5)])(torch.Generator())
