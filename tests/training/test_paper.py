@@ -237,11 +237,13 @@ def test_training_goes_on_from_its_checkpoint_as_if_never_stopped(tmp_path, role
 
 def test_a_batch_has_the_share_of_the_references_vertices():
     one, other = ({"points": np.full((5, 7, 2), v, np.float32), "table": np.zeros((5, 6, 7))} for v in (1.0, 2.0))
-    given, wanted = batches.from_tables([batches.mixed(one, other, share) for share in (0.25, 0.5)])(torch.Generator())
+    given, wanted = batches.from_tables([batches.mixed(one, (other, share)) for share in (0.25, 0.5)])(
+        torch.Generator()
+    )
     assert given.shape == (2, fitting.BATCH, 14) and wanted.shape == (2, fitting.BATCH, 42)
     assert (given[:, :, 0] == 2).float().mean(dim=1).tolist() == [0.25, 0.5]
     none = {name: array[:0] for name, array in other.items()}
-    assert batches.mixed(one, none, 0.5) == [(one, fitting.BATCH)]
+    assert batches.mixed(one, (none, 0.5)) == [(one, fitting.BATCH)]
 
 
 def test_batch_normalisation_of_a_stack_is_each_networks_own():

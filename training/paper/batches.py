@@ -101,13 +101,8 @@ def shuffled(
     return moved, table.gather(2, order[:, None].expand(-1, n_contour, -1))
 
 
-def mixed(random: dict[str, np.ndarray], reference: dict[str, np.ndarray], share: float) -> list:
-    """A NN3's sorts of tables for `from_tables`: this share of the reference's vertices, where there are any."""
-    count = round(share * BATCH) if len(reference["points"]) else 0
-    return [(found, size) for found, size in ((random, BATCH - count), (reference, count)) if size]
-
-
-def table_rows(found: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """NN3's rows of points (K, V, 2), and their tables (K, N_C, V), flattened."""
-    count = len(found["points"])
-    return found["points"].reshape(count, -1), found["table"].reshape(count, -1)
+def mixed(random: dict[str, np.ndarray], *others: tuple[dict[str, np.ndarray], float]) -> list:
+    """A NN3's sorts of tables for `from_tables`: shares of others, where there are any, the rest random."""
+    counts = [round(share * BATCH) if len(found["points"]) else 0 for found, share in others]
+    sorts = (random, BATCH - sum(counts)), *((found, count) for (found, _), count in zip(others, counts, strict=True))
+    return [(found, count) for found, count in sorts if count]

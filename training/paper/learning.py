@@ -126,7 +126,7 @@ def table_curve(config: dict) -> dict:
         f"learning_nn3_{n}_{m}",
         lambda: nn3(n, m, len(shares)),
         lambda: (
-            from_tables([mixed(*part, config["nn3"]["share"]) for part in parts]),
+            from_tables([mixed(random, (reference, config["nn3"]["share"])) for random, reference in parts]),
             [sum(len(tables["points"]) for tables in part) for part in parts],
         ),
         None,

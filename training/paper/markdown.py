@@ -129,10 +129,11 @@ def mixture_part(found: dict) -> str:
             "—" if of["worst"] is None else f"{of['worst']:+.1f} ± {of['worst_spread']:.1f}"
             for of in row["vertices"].values()
         )
-        lines.append([f"{100 * row['share']:.0f} %", *cells])
+        shares = (f"{100 * row['share'].get(name, 0):.0f} %" for name in ("reference", "placed"))
+        lines.append([*shares, *cells])
     names = [f"on {name} vertices: ē_worst, %" for name in found["shares"][0]["vertices"]]
-    text = texts.MIXTURE.format(one_in=round(1 / found["shares"][0]["share"]), **found)
-    return text + "\n\n" + table(["share of the reference's vertices", *names], lines)
+    text = texts.MIXTURE.format(one_in=round(1 / found["shares"][0]["share"]["reference"]), **found)
+    return text + "\n\n" + table(["examples of the reference's vertices", "of NN2's", *names], lines)
 
 
 def stage_parts(rows: list[dict], exclusion: list[dict], mixture: dict) -> list[str]:

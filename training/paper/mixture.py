@@ -1,8 +1,9 @@
-"""What NN3 learns from (section 2.5.2): ``python -m training.paper.mixture``. The share of the reference's vertices.
+"""What NN3 learns from (section 2.5.2): ``python -m training.paper.mixture``. The share of vertices of good meshes.
 
 By the paper a contour has the reference's vertices once, and 50 to 200 groups of random ones beside, which may be as
-close to each other as 0.1 l_s, so that hardly any could belong to a good mesh. Three NN3 of one group see as many
-batches: the paper's share of the reference's vertices, the share that is trained with, and no others.
+close to each other as 0.1 l_s, so that hardly any could belong to a good mesh. Four NN3 of one group see as many
+batches: with the paper's share of the reference's vertices, with the share that is trained with, with no others, and
+with half of that share placed by NN2, as those are that it meets in use.
 """
 
 from __future__ import annotations
@@ -20,9 +21,9 @@ from .batches import from_tables, mixed
 from .comparing import as_contours, as_roles, populations, test_group, write
 from .data import Group
 from .networks import nn3, one_of
-from .sampling import groups_per_contour
+from .sampling import groups_per_contour, reference_tables
 from .stages import given_connected
-from .train import run, tables_of
+from .train import chosen, run, tables_of
 
 
 def main() -> None:
@@ -40,15 +41,17 @@ def compare_shares(config: dict) -> None:
     wanted = config["mixture"]
     n, m = wanted["n_contour"], wanted["n_inner"]
     trained, tested = populations(config, n)
-    found, shares = tables_of(config, trained, m), (1 / (1 + groups_per_contour(m)), config["nn3"]["share"], 1.0)
+    tables = dict(zip(("random", "reference"), tables_of(config, trained, m), strict=True))
+    tables["placed"] = reference_tables(placed(config, chosen(trained.group(m), config["nn3"]["references"])))
+    shares = shares_of(config, m)
     net, _ = run(
         config,
         "nn3",
         f"mixture_{n}_{m}",
         lambda: nn3(n, m, len(shares)),
         lambda: (
-            from_tables([mixed(*found, share) for share in shares]),
-            [sum(len(part["points"]) for part in found)] * len(shares),
+            from_tables([mixed(tables["random"], *((tables[k], v) for k, v in share.items())) for share in shares]),
+            [sum(len(part["points"]) for part in tables.values())] * len(shares),
         ),
         None,
         wanted["steps"],
@@ -60,10 +63,21 @@ def compare_shares(config: dict) -> None:
         role = as_roles(one_of(net.state_dict(), nn3(n, m), number), n, m, by_row=False)
         of = {name: given_connected(role, part) for name, part in groups.items()}
         rows.append({"share": share, "vertices": of})
-        print(f"share {share:.2f}: " + ", ".join(f"{name} {part['worst']} %" for name, part in of.items()), flush=True)
-    best = [float(part["table"].max(axis=2).mean(dtype=np.float64)) for part in found]
-    best = dict(zip(("random", "reference"), best, strict=True))
+        print(f"{share}: " + ", ".join(f"{name} {part['worst']} %" for name, part in of.items()), flush=True)
+    best = {name: float(part["table"].max(axis=2).mean(dtype=np.float64)) for name, part in tables.items()}
     write(config, "mixture", {"n": n, "m": m, "steps": wanted["steps"], "best": best, "shares": rows})
+
+
+def shares_of(config: dict, n_inner: int) -> list[dict[str, float]]:
+    """The shares of the reference's vertices, and of NN2's, that are compared; the rest are random."""
+    share = config["nn3"]["share"]
+    paper_share = 1 / (1 + groups_per_contour(n_inner))
+    return [
+        {"reference": paper_share},
+        {"reference": share},
+        {"reference": 1.0},
+        {"reference": share / 2, "placed": share / 2},
+    ]
 
 
 def placed(config: dict, group: Group) -> Group:

@@ -19,7 +19,7 @@ paper has with 3 and 4 vertices hardly exist here: their NN3 learn from random v
 MIXTURE = """With the paper's share, of N_C {n} and N_I {m} one example in {one_in}, NN3 learns tables of bad meshes: a
 facet's best entry is {best[random]:.2f} with random vertices, and {best[reference]:.2f} with Gmsh's, on average. The
 paper's 5000 epochs show each of Gmsh's meshes 5000 times all the same; to show them a few hundred times here, they are
-half of each batch. Three NN3 of this group after {steps:,} batches, connecting Gmsh's vertices and those that NN2
+half of each batch. Four NN3 of this group after {steps:,} batches, connecting Gmsh's vertices and those that NN2
 places:"""
 
 COUNTS = """NN1 against Gmsh's count. The paper's numbers at l_s = 0.2 belong to another setting of its mesher's size:

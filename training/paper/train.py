@@ -75,13 +75,16 @@ def train_nn2(config: dict, population: Population) -> None:
 def train_nn3(config: dict, population: Population, n_inner: int) -> None:
     """Section 2.5, Algorithm 4."""
     n, wanted = population.contour.shape[1], config["nn3"]
-    found = tables_of(config, population, n_inner)
+    random, reference = tables_of(config, population, n_inner)
     run(
         config,
         "nn3",
         f"nn3_{n}_{n_inner}",
         lambda: nn3(n, n_inner),
-        lambda: (from_tables([mixed(*found, wanted["share"])]), [sum(len(part["points"]) for part in found)]),
+        lambda: (
+            from_tables([mixed(random, (reference, wanted["share"]))]),
+            [len(random["points"]) + len(reference["points"])],
+        ),
         {"numbers": [n_inner]},
         wanted["longer"].get(f"{n}_{n_inner}", wanted["steps"]),
     )
