@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
@@ -28,13 +29,20 @@ def compared(config: dict) -> dict[str, Roles]:
 def as_roles(net: Network, n: int, m: int, by_row: bool) -> Roles:
     """The shipped networks with a NN3, or a NN3* (by_row), for the group (n, m) in place of theirs."""
 
-    def ask(n_contour: int, n_inner: int, given: np.ndarray) -> np.ndarray | None:
-        if (n_contour, n_inner) != (n, m):
-            return None
+    def ask(given: np.ndarray) -> np.ndarray:
         with torch.no_grad():
             return net(torch.as_tensor(given, dtype=torch.float32)[None])[0].numpy()
 
-    return Roles(SHIPPED.count, SHIPPED.place, partial(paper.rate, ask, by_row))
+    return asking(ask, n, m, by_row)
+
+
+def asking(ask: Callable[[np.ndarray], np.ndarray], n: int, m: int, by_row: bool) -> Roles:
+    """As `as_roles`, with a function of rows; contours and sub-contours of other groups have no table."""
+
+    def of_group(n_contour: int, n_inner: int, given: np.ndarray) -> np.ndarray | None:
+        return ask(given) if (n_contour, n_inner) == (n, m) else None
+
+    return Roles(SHIPPED.count, SHIPPED.place, partial(paper.rate, of_group, by_row))
 
 
 def test_group(config: dict, trained: Population, tested: Population, n_inner: int) -> Group:

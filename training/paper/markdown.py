@@ -164,9 +164,14 @@ def stage_table(rows: list[dict], figure: int) -> str:
             )
         count = next((row["contours"] for row in rows if (row["n"], row["m"]) == (n, m)), 0)
         named = NAMED[figure].get((n, m))
+        if figure == 25:
+            row = next((r for r in rows if (r["n"], r["m"]) == (n, m) and r.get("rest by CDT") is not None), None)
+            cells.insert(1, "—" if row is None else f"{row['rest by CDT']:+.1f}")
         lines.append([str(n), str(m), str(count), "" if named is None else f"{named:g}", *cells])
     names = ["calculated tables"] if figure == 24 else [PAPER, OURS]
     head = ["N_C", "N_I", "contours", "paper's ē_worst", *(f"{name}: ē_worst / ē_mean, %" for name in names)]
+    if figure == 25:
+        head.insert(5, f"{PAPER}, sub-contours by CDT: ē_worst, %")
     return f"<details><summary>All groups</summary>\n\n{table(head, lines)}\n\n</details>"
 
 

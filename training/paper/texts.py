@@ -14,13 +14,13 @@ most {nn3[references]:,}, which are half of each batch (Fig. 25), and from rando
 a network once; a mesh is 100 examples for NN2, a patch of the grid each. Numbers in brackets are the paper's epochs.
 With 4 edges Gmsh inserts none or one vertex almost always, as long frozen edges win over the target, so groups that the
 paper has with 3 and 4 vertices hardly exist here: their NN3 learn from random vertices alone, and are not tested. With
-16 edges and l_s 0.2 it inserts about 50, which the paper's figures do not reach either."""
+16 edges and l_s 0.2 it inserts about 50, which the paper's figures do not reach either; the picture ends at 40."""
 
 MIXTURE = """With the paper's share, of N_C {n} and N_I {m} one example in {one_in}, NN3 learns tables of bad meshes: a
 facet's best entry is {best[random]:.2f} with random vertices, and {best[reference]:.2f} with Gmsh's, on average. The
 paper's 5000 epochs show each of Gmsh's meshes 5000 times all the same; to show them a few hundred times here, they are
-half of each batch. Four NN3 of this group after {steps:,} batches, connecting Gmsh's vertices and those that NN2
-places:"""
+half of each batch, and more would be better still; random ones stay for being the paper's. Four NN3 of this group
+after {steps:,} batches, connecting Gmsh's vertices and those that NN2 places, sub-contours by CDT:"""
 
 COUNTS = """NN1 against Gmsh's count. The paper's numbers at l_s = 0.2 belong to another setting of its mesher's size:
 its standard deviation of N_I (in brackets here) is 5.2 with 16 edges and 1.4 with 4; here it is larger with 16 and
@@ -52,16 +52,20 @@ of all their triangulations; so it is a little better than CDT, where the paper'
     25: (
         "connections (NN3 alone)",
         """Gmsh's vertices, connected by Algorithm 3 with NN3's tables, against CDT of them. The errors grow with N_I
-from 4 on, above the paper's: NN3 is trained for some dozens of epochs, not 5000, and its loss still falls. Its one
-value per entry is q_worst, which very often is that of an element elsewhere, so that small errors decide between
-entries that should tie; the library takes no more than the element's own quality for it. Groups that were not trained
-have no point. The shipped NN3 sees one element at a time, with exact geometry, and hardly errs.""",
+from 4 on, above the paper's, and not for NN3's tables of the contours themselves. What is left when their elements are
+made are sub-contours: they are no contours with a vertex in each sector, which is all that NN3 has seen, and the paper,
+which has no NN3 for odd numbers of edges, does not say how they are meshed. Here NN3 is asked wherever its group was
+trained. Where CDT decides in all sub-contours instead, errors like the paper's are left (in brackets above, and a
+column of the table). NN3's one value per entry is q_worst, which very often is that of an element elsewhere, so that
+small errors decide between entries that should tie; the library takes no more than the element's own quality for it.
+Groups that were not trained have no point. The shipped NN3 sees one element at a time, with exact geometry, and hardly
+errs.""",
     ),
     27: (
         "the whole scheme",
         """Only contours and target edge lengths are given, against Gmsh's mesh of whatever number of vertices. Groups
 are by the number that the paper's NN1 asks for, and only groups with all three networks are meshed; the shipped
-networks mesh the same contours. As in the paper, the errors are above those of the parts, here mostly for NN3's.""",
+networks mesh the same contours. As in the paper, the errors are above those of the parts, often about their sum.""",
     ),
 }
 
@@ -71,7 +75,8 @@ surface they were sampled from, by the root of its curvature; the answer is that
 give NN3*'s layers: here they are NN3's, with the edge as N_C further inputs. All eight networks of an N_I see as many
 batches, and learn from far fewer contours than the paper's 2000, so that what is missing are contours more than
 vertices in them: sample sizes hardly matter, and adaptive samples give about the same errors as random ones that are a
-sixth to a third more. Sub-contours have no NN3*, but the constrained Delaunay triangulation's element."""
+sixth to a third more. Sub-contours have no NN3*, but the constrained Delaunay triangulation's element. In the pictures
+of Figs. 15 and 16 the edge is red, the other inner vertex a red square, and what is sampled white."""
 
 DOMAINS = """Made by `tessera.mesh` with the shipped networks. The paper's contours and targets are not given, so these
 are those of `docs/results/domains.md`, which are like its figures and are compared with Gmsh there. The airfoil, a NACA
