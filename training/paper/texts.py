@@ -52,13 +52,13 @@ of all their triangulations; so it is a little better than CDT, where the paper'
     25: (
         "connections (NN3 alone)",
         """Gmsh's vertices, connected by Algorithm 3 with NN3's tables, against CDT of them. The errors grow with N_I
-from 4 on, above the paper's, and not for NN3's tables of the contours themselves. What is left when their elements are
-made are sub-contours: they are no contours with a vertex in each sector, which is all that NN3 has seen, and the paper,
-which has no NN3 for odd numbers of edges, does not say how they are meshed. Here NN3 is asked wherever its group was
-trained. Where CDT decides in all sub-contours instead, errors like the paper's are left (in brackets above, and a
-column of the table). NN3's one value per entry is q_worst, which very often is that of an element elsewhere, so that
-small errors decide between entries that should tie; the library takes no more than the element's own quality for it.
-Groups that were not trained have no point. The shipped NN3 sees one element at a time, with exact geometry, and hardly
+from 4 on, and are above the paper's, for the sub-contours that are left when a contour's elements are made: they are
+no contours with a vertex in each sector, which is all that NN3 has seen, and the paper, which has no NN3 for odd
+numbers of edges, does not say how it meshes them. Here NN3 is asked wherever its group was trained. Where CDT decides
+in all sub-contours instead, errors like the paper's are left (in brackets above, dotted in the picture, and a column
+of the table). NN3's one value per entry is q_worst, which very often is that of an element elsewhere, so that small
+errors decide between entries that should tie; the library takes no more than the element's own quality for it. Groups
+that were not trained have no point. The shipped NN3 sees one element at a time, with exact geometry, and hardly
 errs.""",
     ),
     27: (
@@ -90,7 +90,7 @@ through its Python API; it is written in C++, the rest in Python. Most of a call
 numpy and onnxruntime, which a batch shares: there both take about Gmsh's time or less."""
 
 LEARNING = """One NN1, NN2 and NN3, each trained on shares of its population for as many batches (epochs differ),
-measured on test contours (NN3 on random vertices in them). NN1 still gains from more contours, NN3 a little, NN2
+measured on test contours (NN3 on the reference's vertices in them). NN1 still gains from more contours, NN2 and NN3
 hardly. All still gain from longer training, whose loss (NN1's absolute, the others' squared) the table has, too: it is
 training that is missing here more than contours; the paper's 3000 to 5000 epochs are some dozens to hundreds of times
 as long."""
