@@ -208,6 +208,15 @@ def test_the_element_in_a_sharp_tail_is_shown_and_does_not_decide():
     assert "0.80, 0.95 | 0.40" in markdown.domain_table([row])
 
 
+@pytest.mark.parametrize(("adaptive", "spread", "answer"), [(14.0, 0.5, "reproduced"), (20.0, 3.0, "worse")])
+def test_a_gain_that_could_be_none_is_not_reproduced(adaptive, spread, answer):
+    rows = [
+        {"m": 1, "level": 96, "sampling": sampling, "worst": worst, "worst_spread": spread, "size": size}
+        for sampling, worst, size in (("random", 20.0, 594), ("adaptive", adaptive, 382))
+    ]
+    assert next(iter(claims._adaptive(rows))).answer == answer
+
+
 def test_epochs_are_those_of_the_exported_networks(tiny):
     folder = tiny["folders"]["models"]
     assert markdown.epochs(folder / "nn1_6.onnx") == pytest.approx(40 * fitting.BATCH / (60 * 3))

@@ -157,6 +157,7 @@ def _dearer(rows: list[dict]) -> Claim:
 
 
 def _adaptive(rows: list[dict]) -> Iterable[Claim]:
+    """By how much adaptive samples are better; a gain that could be none, within two standard errors, is worse."""
     for m, (level, better, fewer) in ADAPTIVE.items():
         pair = {row["sampling"]: row for row in rows if (row["m"], row["level"]) == (m, level)}
         what = f"Fig. 26: NN3*, N_I {m}, {level} % confidence: adaptive sampling is better by (with fewer samples)"
@@ -168,7 +169,8 @@ def _adaptive(rows: list[dict]) -> Iterable[Claim]:
         spread = 100 * float(np.hypot(random["worst_spread"], adaptive["worst_spread"])) / random["worst"]
         fewer_here = 100 * (1 - adaptive["size"] / random["size"])
         text = f"{gain:+.0f} ± {spread:.0f} % ({fewer_here:.0f} % fewer)"
-        yield Claim(what, f"{better} % ({fewer} % fewer)", text, answer(gain, better, spread, larger_is_better=True))
+        verdict = answer(gain, better, spread, larger_is_better=True) if gain > 2 * spread else "worse"
+        yield Claim(what, f"{better} % ({fewer} % fewer)", text, verdict)
 
 
 def _domains(rows: list[dict]) -> Iterable[Claim]:

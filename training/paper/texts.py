@@ -75,8 +75,9 @@ surface they were sampled from, by the root of its curvature; the answer is that
 give NN3*'s layers: here they are NN3's, with the edge as N_C further inputs. All eight networks of an N_I see as many
 batches, and learn from far fewer contours than the paper's 2000, so that what is missing are contours more than
 vertices in them: sample sizes hardly matter, and adaptive samples give about the same errors as random ones that are a
-sixth to a third more. Sub-contours have no NN3*, but the constrained Delaunay triangulation's element. In the pictures
-of Figs. 15 and 16 the edge is red, the other inner vertex a red square, and what is sampled white."""
+sixth to a third more; a gain within two standard errors of none is called worse. Sub-contours have no NN3*, but the
+constrained Delaunay triangulation's element. In the pictures of Figs. 15 and 16 the edge is red, the other inner vertex
+a red square, and what is sampled white."""
 
 DOMAINS = """Made by `tessera.mesh` with the shipped networks. The paper's contours and targets are not given, so these
 are those of `docs/results/domains.md`, which are like its figures and are compared with Gmsh there. The airfoil, a NACA
