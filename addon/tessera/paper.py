@@ -185,9 +185,14 @@ def _rate(
 
     def ask(n: int, m: int, rows: np.ndarray) -> np.ndarray | None:
         trained = is_trained(connection, (n, m), folder)
-        return _ask(folder / f"{connection}_{n}_{m}.onnx", rows) if trained else None
+        return table_network(folder, n, m, connection)(rows) if trained else None
 
     return rate(ask, connection == "nn3_star", contour, n_contour, inner, n_inner, entries)
+
+
+def table_network(folder: Path, n: int, m: int, connection: str = "nn3") -> Callable[[np.ndarray], np.ndarray]:
+    """The NN3 of a group, or its NN3* ("nn3_star"): rows (b, inputs) to tables or their rows (b, outputs)."""
+    return partial(_ask, folder / f"{connection}_{n}_{m}.onnx")
 
 
 def rate(

@@ -12,7 +12,17 @@ from tessera.cavity import is_inside
 from tessera.roles import SHIPPED
 from tests.validity import check_mesh
 from training import configuration, contours
-from training.paper import batches, data, generate, networks, sampling, settings, train
+from training.paper import (
+    batches,
+    claims,
+    data,
+    fitting,
+    generate,
+    markdown,
+    networks,
+    settings,
+    train,
+)
 from training.paper.__main__ import everything
 
 ANSWERS = {"reproduced", "better", "worse", "not tested"}
@@ -40,8 +50,11 @@ meshes = 20
 groups = {{ 6 = [1, 2, 3, 4], 10 = [1, 2, 4] }}
 [nn3]
 steps = 20
+longer = {{ 10_4 = 30 }}
 seed = 3
 meshes = 4
+references = 10
+share = 0.5
 groups = {{ 6 = [1, 2, 3, 4], 10 = [2, 4] }}
 [nn3_star]
 steps = 10
@@ -58,6 +71,11 @@ fewest = 1
 steps = 10
 seed = 5
 contours = 5
+[mixture]
+n_contour = 6
+n_inner = 4
+steps = 10
+seed = 8
 [learning]
 shares = [0.5, 1.0]
 seed = 6
@@ -83,6 +101,7 @@ def test_the_whole_report_is_made_of_tiny_populations(tiny):
     text = (folder / "reproduction.md").read_text()
     for figure in (17, 18, 19, 21, 22, 24, 25, 26, 27):
         assert f"Fig. {figure}" in text or f"Figs. {figure}" in text or f"and {figure}" in text
+    assert "sub-contours by CDT: ē_worst" in text and "examples of the reference's vertices" in text
     pictures = {line.split("(")[1].rstrip(")") for line in text.splitlines() if line.startswith("![")}
     assert pictures and all((folder / picture).stat().st_size > 1000 for picture in pictures)
     answers = [line.split("**")[1] for line in text.splitlines() if line.count("**") == 2]
@@ -181,12 +200,27 @@ def test_calculated_scores_decode_to_the_vertices_they_were_made_of():
     assert sorted(away.argmin(axis=1)) == [0, 1, 2] and away.min(axis=1).max() < 0.06
 
 
-def test_random_groups_keep_their_distances():
-    contour = contours.transformed_sector(np.random.default_rng(5), 8)
-    places = sampling.admissible(contour, 0.06)
-    groups = sampling.random_groups(np.random.default_rng(6), places, 4, 50, 0.06)
-    away = np.linalg.norm(groups[:, :, None] - groups[:, None], axis=-1) + 10 * np.eye(4)
-    assert groups.shape == (50, 4, 2) and away.min() >= 0.06
+def test_the_element_in_a_sharp_tail_is_shown_and_does_not_decide():
+    row = {"name": "wing", "paper": (0.7, 0.9), "q_worst": 0.8, "q_mean": 0.95, "q_left_out": 0.4, "triangles": 9}
+    worst, mean = claims._domains([row])
+    assert (worst.answer, mean.answer) == ("better", "better")
+    assert worst.shipped == "0.80 (0.40 with the element in the sharp tail)" and mean.shipped == "0.95"
+    assert "0.80, 0.95 | 0.40" in markdown.domain_table([row])
+
+
+@pytest.mark.parametrize(("adaptive", "spread", "answer"), [(14.0, 0.5, "reproduced"), (20.0, 3.0, "worse")])
+def test_a_gain_that_could_be_none_is_not_reproduced(adaptive, spread, answer):
+    rows = [
+        {"m": 1, "level": 96, "sampling": sampling, "worst": worst, "worst_spread": spread, "size": size}
+        for sampling, worst, size in (("random", 20.0, 594), ("adaptive", adaptive, 382))
+    ]
+    assert next(iter(claims._adaptive(rows))).answer == answer
+
+
+def test_epochs_are_those_of_the_exported_networks(tiny):
+    folder = tiny["folders"]["models"]
+    assert markdown.epochs(folder / "nn1_6.onnx") == pytest.approx(40 * fitting.BATCH / (60 * 3))
+    assert markdown.epochs(folder / "nn1_5.onnx") is None
 
 
 def test_shards_are_reproducible_and_hold_every_mesh():

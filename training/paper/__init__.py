@@ -9,6 +9,7 @@
     python -m training.paper.counts        Fig. 19
     python -m training.paper.resolution    Fig. 21
     python -m training.paper.exclusion     the radius of exclusion, of which the paper's is too small
+    python -m training.paper.mixture       the share of the reference's vertices that NN3 learns from
     python -m training.paper.stages        Figs. 22, 24, 25 and 27
     python -m training.paper.adaptive      Table 1, Figs. 15, 16 and 26
     python -m training.paper.speed         section 5

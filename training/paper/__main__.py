@@ -10,6 +10,7 @@ from .exclusion import compare_radii
 from .export import export_all
 from .generate import make_all
 from .learning import measure_curves
+from .mixture import compare_shares
 from .populations import count_all
 from .report import write_report
 from .resolution import compare_grids
@@ -24,6 +25,7 @@ STEPS = (
     export_all,
     count_all,
     compare_radii,
+    compare_shares,
     compare_counts,
     compare_grids,
     compare_all,

@@ -6,22 +6,18 @@ sample is a contour with N_I inner vertices and one of its edges; what is learnt
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 import torch
 
-from tessera.paper import rate
 from tessera.paper_placement import grid_points
-from tessera.roles import SHIPPED, Roles
 
 from .. import tables
 from . import settings
 from .batches import from_rows
-from .comparing import populations, test_group, write
+from .comparing import as_roles, populations, test_group, write
 from .data import Group
 from .export import star_sorts
-from .networks import Network, nn3_star, one_of
+from .networks import nn3_star, one_of
 from .sampling import APART, GRID, kept_tables, random_groups
 from .stages import given_connected
 from .surfaces import APART_OF_SEVERAL, inside, quality_surfaces, sampled
@@ -73,20 +69,8 @@ def of_number(config: dict, m: int) -> list[dict]:
         row = {"m": m, "sampling": sampling, "level": level, "size": size, "contours learnt from": len(group)}
         population = float(found[sampling]["population"].mean())
         row |= {"population": population, "epochs": notes["epochs"][number], "loss": notes["curve"][-1][1][number]}
-        results.append(row | given_connected(as_roles(single, n, m), test))
+        results.append(row | given_connected(as_roles(single, n, m, by_row=True), test))
     return results
-
-
-def as_roles(net: Network, n: int, m: int) -> Roles:
-    """The shipped networks with a NN3* for the group (n, m) in place of NN3."""
-
-    def ask(n_contour: int, n_inner: int, given: np.ndarray) -> np.ndarray | None:
-        if (n_contour, n_inner) != (n, m):
-            return None
-        with torch.no_grad():
-            return net(torch.as_tensor(given, dtype=torch.float32)[None])[0].numpy()
-
-    return Roles(SHIPPED.count, SHIPPED.place, partial(rate, ask, True))
 
 
 def samples(seed: int, group: Group, sampling: str, size: int) -> dict[str, np.ndarray]:

@@ -66,7 +66,43 @@ def from_groups(groups: Sequence[Group], resolutions: Sequence[int]) -> Draw:
     return draw
 
 
-def table_rows(found: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-    """NN3's rows of points (K, V, 2), and their tables (K, N_C, V), flattened."""
-    count = len(found["points"])
-    return found["points"].reshape(count, -1), found["table"].reshape(count, -1)
+def from_tables(networks: Sequence[Sequence[tuple[dict[str, np.ndarray], int]]]) -> Draw:
+    """Batches for G NN3, each of several sorts of tables (`sampling`), so many rows of each sort.
+
+    Inner vertices come in another random order each time, the table's columns with them: section 2.5.2 has no order.
+    """
+    kept = [
+        [(torch.as_tensor(found["points"]), torch.as_tensor(found["table"]), count) for found, count in sorts]
+        for sorts in networks
+    ]
+
+    def draw(generator: torch.Generator) -> tuple[torch.Tensor, torch.Tensor]:
+        given, wanted = [], []
+        for sorts in kept:
+            rows = [torch.randint(len(points), (count,), generator=generator) for points, _, count in sorts]
+            points = torch.cat([points[row] for (points, _, _), row in zip(sorts, rows, strict=True)])
+            table = torch.cat([table[row] for (_, table, _), row in zip(sorts, rows, strict=True)]).float()
+            points, table = shuffled(points, table, generator)
+            given.append(points.flatten(1))
+            wanted.append(table.flatten(1))
+        return torch.stack(given), torch.stack(wanted)
+
+    return draw
+
+
+def shuffled(
+    points: torch.Tensor, table: torch.Tensor, generator: torch.Generator
+) -> tuple[torch.Tensor, torch.Tensor]:
+    """Points (B, V, 2) with their inner vertices in random orders, and their tables (B, N_C, V)."""
+    count, n_contour, n_points = table.shape
+    inner = torch.rand((count, n_points - n_contour), generator=generator).argsort(dim=1) + n_contour
+    order = torch.cat([torch.arange(n_contour).expand(count, -1), inner], dim=1)
+    moved = points.gather(1, order[..., None].expand(-1, -1, 2))
+    return moved, table.gather(2, order[:, None].expand(-1, n_contour, -1))
+
+
+def mixed(random: dict[str, np.ndarray], *others: tuple[dict[str, np.ndarray], float]) -> list:
+    """A NN3's sorts of tables for `from_tables`: shares of others, where there are any, the rest random."""
+    counts = [round(share * BATCH) if len(found["points"]) else 0 for found, share in others]
+    sorts = (random, BATCH - sum(counts)), *((found, count) for (found, _), count in zip(others, counts, strict=True))
+    return [(found, count) for found, count in sorts if count]

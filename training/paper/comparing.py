@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
+import torch
 
 from tessera import paper
 from tessera.roles import SHIPPED, Roles
@@ -13,6 +16,7 @@ from tessera.roles import SHIPPED, Roles
 from ..evaluate.meshes import Meshes, are_valid, measure
 from ..evaluate.sets import Contours
 from .data import Group, Population, load, sample_size
+from .networks import Network
 
 PAPER, OURS = "the paper's networks", "the shipped networks"
 
@@ -20,6 +24,25 @@ PAPER, OURS = "the paper's networks", "the shipped networks"
 def compared(config: dict) -> dict[str, Roles]:
     """The networks that every experiment asks: the paper's, from the folder they were exported to, and the shipped."""
     return {PAPER: paper.load("paper", config["folders"]["models"]), OURS: SHIPPED}
+
+
+def as_roles(net: Network, n: int, m: int, by_row: bool) -> Roles:
+    """The shipped networks with a NN3, or a NN3* (by_row), for the group (n, m) in place of theirs."""
+
+    def ask(given: np.ndarray) -> np.ndarray:
+        with torch.no_grad():
+            return net(torch.as_tensor(given, dtype=torch.float32)[None])[0].numpy()
+
+    return asking(ask, n, m, by_row)
+
+
+def asking(ask: Callable[[np.ndarray], np.ndarray], n: int, m: int, by_row: bool) -> Roles:
+    """As `as_roles`, with a function of rows; contours and sub-contours of other groups have no table."""
+
+    def of_group(n_contour: int, n_inner: int, given: np.ndarray) -> np.ndarray | None:
+        return ask(given) if (n_contour, n_inner) == (n, m) else None
+
+    return Roles(SHIPPED.count, SHIPPED.place, partial(paper.rate, of_group, by_row))
 
 
 def test_group(config: dict, trained: Population, tested: Population, n_inner: int) -> Group:

@@ -14,11 +14,11 @@ import torch
 from tessera.paper_placement import GRID, grid_points, patches
 
 from . import settings
-from .batches import count_rows, from_groups, from_rows, scores, table_rows
+from .batches import count_rows, from_groups, from_rows, from_tables, mixed, scores
 from .comparing import populations, test_group, write
 from .data import Group
 from .networks import Network, nn1, nn2, nn3
-from .sampling import make_tables
+from .sampling import reference_tables
 from .train import chosen, run, tables_of
 
 
@@ -118,20 +118,23 @@ def table_curve(config: dict) -> dict:
     n, m = wanted["n_contour"], wanted["n_inner"]
     trained, tested = populations(config, n)
     found = tables_of(config, trained, m)
-    sizes = [max(1, round(share * (found["mesh"].max() + 1))) for share in shares]
-    parts = [table_rows({name: array[found["mesh"] < size] for name, array in found.items()}) for size in sizes]
+    parts = [[first_meshes(part, share) for part in found] for share in shares]
+    sizes = [len(reference["points"]) for _, reference in parts]
     net, notes = run(
         config,
         "nn3",
         f"learning_nn3_{n}_{m}",
         lambda: nn3(n, m, len(shares)),
-        lambda: (from_rows(parts), [len(part[0]) for part in parts]),
+        lambda: (
+            from_tables([mixed(random, (reference, config["nn3"]["share"])) for random, reference in parts]),
+            [sum(len(tables["points"]) for tables in part) for part in parts],
+        ),
         None,
         wanted["steps"],
         config["learning"]["seed"],
     )
-    group = test_group(config, trained, tested, m).rows(slice(100))
-    given, answer = table_rows(make_tables(np.random.default_rng(5), group, m))
+    test = reference_tables(test_group(config, trained, tested, m))
+    given, answer = (test[name].reshape(len(test["mesh"]), -1) for name in ("points", "table"))
     loss = _asked(net, given, lambda out: np.sqrt(np.square(out - answer).mean()))
     what = "root mean square error of the table's entries"
     return {
@@ -143,6 +146,12 @@ def table_curve(config: dict) -> dict:
         "size": sizes,
         "loss": loss,
     } | by_steps(notes)
+
+
+def first_meshes(found: dict[str, np.ndarray], share: float) -> dict[str, np.ndarray]:
+    """The tables of the first meshes, so large a share of them."""
+    kept = found["mesh"] < max(1, round(share * (found["mesh"].max() + 1)))
+    return {name: array[kept] for name, array in found.items()}
 
 
 def by_steps(notes: dict) -> dict:

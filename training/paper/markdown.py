@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 
 import numpy as np
-import torch
+import onnx
 
 from . import texts
 from .claims import NAMED, Claim
 from .comparing import OURS, PAPER
+from .fitting import BATCH
 
 
 def table(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -27,41 +30,39 @@ def claim_table(answers: Sequence[Claim]) -> str:
 
 
 def population_table(config: dict, found: dict) -> str:
-    """Of each N_C: contours, meshes of the groups, and epochs of each role, from the runs' own notes."""
-    rows = []
+    """Of each N_C: contours, meshes of the groups, and epochs of each role, from what the networks' files say."""
+    rows, folder = [], config["folders"]["models"]
     for row in found["populations"]["by edges"]:
         n = row["n"]
-        one, two = epochs(config, f"nn1_{n}"), epochs(config, f"nn2_{n}")
-        three = [epochs(config, f"nn3_{n}_{m}") for m in config["nn3"]["groups"].get(n, ())]
-        inner = list(config["nn3"]["groups"].get(n, ()))
-        meshes = [row["groups"][m] for m in config["nn2"]["groups"][n] if m < len(row["groups"])]
+        placed, connected = config["nn2"]["groups"][n], config["nn3"]["groups"].get(n, ())
+        meshes = [row["groups"][m] for m in placed if m < len(row["groups"])]
         rows.append(
             [
                 str(n),
                 texts.PAPER_POPULATIONS.get(n, "not said"),
                 f"{row['contours']:,}",
-                _range(one),
-                f"{_ints(config['nn2']['groups'][n])}: {min(meshes, default=0):,} to {max(meshes, default=0):,}",
+                _range([epochs(folder / f"nn1_{n}.onnx")]),
+                f"{_ints(placed)}: {min(meshes, default=0):,} to {max(meshes, default=0):,}",
                 f"{100 * row['covered']:.0f} %",
-                _range(two),
-                _ints(inner) if inner else "—",
-                _range([value for part in three for value in part]),
+                _range([epochs(folder / f"nn2_{n}_{m}.onnx") for m in placed]),
+                _ints(connected) if connected else "—",
+                _range([epochs(folder / f"nn3_{n}_{m}.onnx") for m in connected]),
             ]
         )
     columns = ["N_C", "contours, paper", "contours", "NN1: epochs (3000)", "NN2's groups N_I: meshes", "of all meshes"]
     return table([*columns, "NN2: epochs (5000)", "NN3's groups N_I", "NN3: epochs (5000)"], rows)
 
 
-def epochs(config: dict, run: str) -> list[float]:
-    """Of each network of a run, as far as it came; none where it is not there."""
-    file = config["folders"]["runs"] / f"{run}.pt"
+def epochs(file: Path) -> float | None:
+    """How often an exported network has seen its examples; None where it is not there."""
     if not file.exists():
-        return []
-    state = torch.load(file, weights_only=False)
-    return [value * state["step"] / state["notes"]["steps"] for value in state["notes"]["epochs"]]
+        return None
+    about = {entry.key: json.loads(entry.value) for entry in onnx.load(file).metadata_props}
+    return about["step"] * BATCH / about["examples"]
 
 
-def _range(values: Sequence[float]) -> str:
+def _range(values: Sequence[float | None]) -> str:
+    values = [value for value in values if value is not None]
     if not values:
         return "—"
     low, high = f"{min(values):.0f}", f"{max(values):.0f}"
@@ -120,7 +121,22 @@ def exclusion_table(rows: list[dict]) -> str:
     return table(["radius of exclusion", *names], [["mean of the groups' ē_worst, %, training meshes", *means]])
 
 
-def stage_parts(rows: list[dict], exclusion: list[dict]) -> list[str]:
+def mixture_part(found: dict) -> str:
+    """NN3's ē_worst by the share of the reference's vertices that it learns from."""
+    lines = []
+    for row in found["shares"]:
+        cells = (
+            "—" if of["worst"] is None else f"{of['worst']:+.1f} ± {of['worst_spread']:.1f}"
+            for of in row["vertices"].values()
+        )
+        shares = (f"{100 * row['share'].get(name, 0):.0f} %" for name in ("reference", "placed"))
+        lines.append([*shares, *cells])
+    names = [f"on {name} vertices: ē_worst, %" for name in found["shares"][0]["vertices"]]
+    text = texts.MIXTURE.format(one_in=round(1 / found["shares"][0]["share"]["reference"]), **found)
+    return text + "\n\n" + table(["examples of the reference's vertices", "of NN2's", *names], lines)
+
+
+def stage_parts(rows: list[dict], exclusion: list[dict], mixture: dict) -> list[str]:
     """Figs. 22, 24, 25 and 27, each with its sentence, picture and table of groups."""
     parts = []
     for figure, (title, text) in texts.STAGES.items():
@@ -130,6 +146,8 @@ def stage_parts(rows: list[dict], exclusion: list[dict]) -> list[str]:
             parts.append(_shares(rows))
         if figure == 22:
             parts.append(exclusion_table(exclusion))
+        if figure == 25:
+            parts.append(mixture_part(mixture))
         parts += [f"![Fig. {figure}](reproduction/fig_{figure}.png)", stage_table(own, figure)]
     return parts
 
@@ -146,9 +164,14 @@ def stage_table(rows: list[dict], figure: int) -> str:
             )
         count = next((row["contours"] for row in rows if (row["n"], row["m"]) == (n, m)), 0)
         named = NAMED[figure].get((n, m))
+        if figure == 25:
+            row = next((r for r in rows if (r["n"], r["m"]) == (n, m) and r.get("rest by CDT") is not None), None)
+            cells.insert(1, "—" if row is None else f"{row['rest by CDT']:+.1f}")
         lines.append([str(n), str(m), str(count), "" if named is None else f"{named:g}", *cells])
     names = ["calculated tables"] if figure == 24 else [PAPER, OURS]
     head = ["N_C", "N_I", "contours", "paper's ē_worst", *(f"{name}: ē_worst / ē_mean, %" for name in names)]
+    if figure == 25:
+        head.insert(5, f"{PAPER}, sub-contours by CDT: ē_worst, %")
     return f"<details><summary>All groups</summary>\n\n{table(head, lines)}\n\n</details>"
 
 
@@ -188,15 +211,14 @@ def adaptive_table(rows: list[dict]) -> str:
 
 def domain_table(rows: list[dict]) -> str:
     """Table 2."""
-    lines = [
-        [
-            row["name"],
-            *("{:.2f}, {:.2f}".format(*pair) for pair in (texts.TABLE_2[row["name"]], (row["q_worst"], row["q_mean"]))),
-            str(row["triangles"]),
-        ]
-        for row in rows
-    ]
-    return table(["", "paper: q_worst, q_mean", "the shipped networks", "triangles"], lines)
+    lines = []
+    for row in rows:
+        worst, mean = row["paper"]
+        left_out = "—" if row["q_left_out"] is None else f"{row['q_left_out']:.2f}"
+        ours = f"{row['q_worst']:.2f}, {row['q_mean']:.2f}"
+        lines.append([row["name"], f"{worst:.2f}, {mean:.2f}", ours, left_out, str(row["triangles"])])
+    columns = ["", "paper: q_worst, q_mean", "the shipped networks", "the element in the sharp tail", "triangles"]
+    return table(columns, lines)
 
 
 def speed_table(rows: list[dict]) -> str:

@@ -46,15 +46,11 @@ class BatchNorm(nn.Module):
 
     def forward(self, x: torch.Tensor) -> torch.Tensor:
         """By the batch while training, by the running means afterwards."""
-        if self.training:
-            variance, mean = torch.var_mean(x, dim=1, keepdim=True, correction=0)
-            with torch.no_grad():
-                self.mean.lerp_(mean, self.momentum)
-                self.variance.lerp_(variance, self.momentum)
-        else:
-            mean, variance = self.mean, self.variance
-        factor = self.scale * torch.rsqrt(variance + self.eps)
-        return x * factor + (self.shift - mean * factor)
+        networks, batch, features = x.shape
+        rows = x.transpose(0, 1).reshape(batch, networks * features)
+        own = (part.reshape(-1) for part in (self.mean, self.variance, self.scale, self.shift))
+        rows = nn.functional.batch_norm(rows, *own, self.training, self.momentum, self.eps)
+        return rows.reshape(batch, networks, features).transpose(0, 1)
 
 
 class Convolution(nn.Module):

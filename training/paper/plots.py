@@ -81,6 +81,11 @@ def draw_stage(path: Path, rows: list[dict], figure_number: int) -> None:
             line = [row for row in rows if (row["n"], row["networks"]) == (n, name)]
             if line:
                 _draw_errors(ax, line, "calculated tables" if figure_number == 24 else name, _COLOURS[name])
+        rest = [(row["m"], row["rest by CDT"]) for row in rows if row["n"] == n and "rest by CDT" in row]
+        if rest:
+            ax.plot(
+                *np.transpose(sorted(rest)), ":", color=_COLOURS[PAPER], label=f"{PAPER}, sub-contours by CDT: ē_worst"
+            )
         named = [(m, value) for (of, m), value in NAMED[figure_number].items() if of == n]
         if named:
             ax.plot(*zip(*named, strict=True), "*", ms=11, color="#2a9d8f", label="ē_worst in the paper's text")

@@ -19,7 +19,7 @@ from .data import load
 from .sampling import GRID
 from .surfaces import inside, quality_surfaces, sampled, smoothed
 
-NAMES = ("populations", "counts", "resolution", "adaptive", "domains", "learning", "exclusion", "speed")
+NAMES = ("populations", "counts", "resolution", "adaptive", "domains", "learning", "exclusion", "mixture", "speed")
 
 
 def main() -> None:
@@ -37,9 +37,8 @@ def write_report(config: dict) -> Path:
     draw(folder / "reproduction", config, found)
     parts = ["# The paper, reproduced", texts.introduction(config, reference.VERSION)]
     parts += ["## The paper's claims", markdown.claim_table(claims(found)), "## Populations and epochs"]
-    sizes = {role: config[role]["meshes"] for role in ("nn2", "nn3")}
     parts += [
-        texts.POPULATIONS.format(**sizes),
+        texts.POPULATIONS.format(**config),
         markdown.population_table(config, found),
         _picture("Figs. 17 and 18", "populations"),
     ]
@@ -60,7 +59,7 @@ def figures(found: dict) -> list[str]:
         texts.RESOLUTION,
         _picture("Fig. 21", "resolution"),
         markdown.resolution_table(found["resolution"]),
-        *markdown.stage_parts(found["stages"], found["exclusion"]),
+        *markdown.stage_parts(found["stages"], found["exclusion"], found["mixture"]),
         "## Table 1, Figs. 15, 16 and 26: adaptive sampling (NN3*)",
         texts.ADAPTIVE,
         *(_picture(f"Fig. {14 + m}", f"surface_{m}") for m in (1, 2)),

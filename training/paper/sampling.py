@@ -25,8 +25,8 @@ def admissible(contour: np.ndarray, margin: float, resolution: int = GRID) -> np
 
 
 def groups_per_contour(n_inner: int) -> int:
-    """How many random groups of inner vertices a contour has (section 3.2.3)."""
-    return 50 if n_inner <= 4 else 100 if n_inner <= 8 else 200
+    """How many random groups of inner vertices a contour has (section 3.2.3); without inner vertices one row."""
+    return 50 if 0 < n_inner <= 4 else 100 if 4 < n_inner <= 8 else 200 if n_inner else 1
 
 
 def random_groups(rng: np.random.Generator, places: np.ndarray, n_inner: int, count: int, apart: float) -> np.ndarray:
@@ -44,42 +44,47 @@ def random_groups(rng: np.random.Generator, places: np.ndarray, n_inner: int, co
     return found[:count]
 
 
-def make_tables(rng: np.random.Generator, group: Group, n_inner: int) -> dict[str, np.ndarray]:
-    """Of each mesh of a group the reference's vertices and random ones: points (K, V, 2) and q_worst (K, N_C, V).
+def random_tables(rng: np.random.Generator, contours: np.ndarray, l_s: np.ndarray, n_inner: int) -> dict:
+    """Random inner vertices in contours (k, N_C, 2) meshed at l_s (k,).
 
-    mesh: (K,) the row of the group; vertices that the reference does not have are given as NaN.
+    points (K, V, 2), their q_worst (K, N_C, V), and the contours' numbers (K,) as "mesh".
     """
     points, rows = [], []
-    for row in range(len(group)):
-        contour, inner = group.contour[row], group.inner[row : row + 1]
-        places = admissible(contour, APART * group.l_s[row])
-        drawn = random_groups(rng, places, n_inner, groups_per_contour(n_inner), APART * group.l_s[row])
-        inner = np.concatenate([inner[np.isfinite(inner).all(axis=(1, 2))], drawn]) if n_inner else inner
-        points.append(np.concatenate([np.repeat(contour[None], len(inner), axis=0), inner], axis=1))
-        rows.append(np.full(len(inner), row))
-    points, rows = np.concatenate(points), np.concatenate(rows)
-    n_contour = group.contour.shape[1]
-    table = tables.connection_tables(points, np.full(len(points), n_contour), np.full(len(points), n_inner))
-    return {"points": points.astype(np.float32), "table": table[..., 0].astype(np.float16), "mesh": rows}
+    for row, (contour, apart) in enumerate(zip(contours, APART * l_s, strict=True)):
+        drawn = random_groups(rng, admissible(contour, apart), n_inner, groups_per_contour(n_inner), apart)
+        points.append(np.concatenate([np.repeat(contour[None], len(drawn), axis=0), drawn], axis=1))
+        rows.append(np.full(len(drawn), row))
+    return {**_tables(np.concatenate(points), n_inner), "mesh": np.concatenate(rows)}
 
 
-def learnt_group(population: Population, n_inner: int, most: int) -> Group:
-    """The meshes that NN3 learns from: the population's group, filled up by contours of other groups.
+def reference_tables(group: Group) -> dict[str, np.ndarray]:
+    """As `random_tables`, of the reference's own vertices: one row for each mesh of a group."""
+    points = np.concatenate([group.contour, group.inner], axis=1)
+    return {**_tables(points, group.inner.shape[1]), "mesh": np.arange(len(group))}
 
-    Those have NaN for inner vertices, so that only random ones are learnt from; a contour is there once where it can
-    be. Without inner vertices the mesh does not matter, so every contour is of the group.
+
+def _tables(points: np.ndarray, n_inner: int) -> dict[str, np.ndarray]:
+    count, n_contour = len(points), points.shape[1] - n_inner
+    table = np.zeros((0, n_contour, points.shape[1], 2))
+    if count:
+        table = tables.connection_tables(points, np.full(count, n_contour), np.full(count, n_inner))
+    return {"points": points.astype(np.float32), "table": table[..., 0].astype(np.float16)}
+
+
+def drawn_in(population: Population, n_inner: int, most: int) -> tuple[np.ndarray, np.ndarray]:
+    """Contours and targets that random vertices are drawn in: the group's, filled up by those of other groups.
+
+    A contour is there once where it can be. Without inner vertices the target does not matter, and there are 20 times
+    as many contours.
     """
     group = population.group(n_inner)
-    if n_inner and len(group) >= most:
-        return group.rows(np.random.default_rng(n_inner).permutation(len(group))[:most])
-    index = np.arange(most if n_inner else 20 * most) % len(population.contour)
-    missing = len(index) - len(group) if n_inner else len(index)
-    rows, target = index[:missing], np.arange(missing) % len(population.targets)
-    nothing = np.full((missing, n_inner, 2), np.nan)
-    other = Group(population.contour[rows], population.targets[target], nothing, population.quality[rows, target])
     if not n_inner:
-        return other
-    return Group(*(np.concatenate([getattr(g, name) for g in (group, other)]) for name in Group.__dataclass_fields__))
+        group, most = group.rows(slice(0)), 20 * most
+    group = group.rows(np.random.default_rng(n_inner).permutation(len(group))[:most])
+    other = np.arange(most - len(group))
+    contours = population.contour[other % len(population.contour)]
+    targets = population.targets[other % len(population.targets)]
+    return np.concatenate([group.contour, contours]), np.concatenate([group.l_s, targets])
 
 
 def kept_tables(file: Path, make: callable) -> dict[str, np.ndarray]:

@@ -21,7 +21,7 @@ from .. import tables
 from ..evaluate.meshers import by_delaunay, of_scheme
 from ..evaluate.meshes import Meshes, measure
 from . import settings
-from .comparing import PAPER, as_contours, compared, errors, mean_errors, populations, test_group, write
+from .comparing import PAPER, as_contours, asking, compared, errors, mean_errors, populations, test_group, write
 from .data import Group, Population
 
 
@@ -64,16 +64,22 @@ def placed(config: dict, roles: dict[str, Roles], group: Group) -> list[dict]:
 
 
 def connected(config: dict, roles: dict[str, Roles], group: Group) -> list[dict]:
-    """Figs. 24 and 25: the reference's vertices, connected by calculated tables and by NN3, against CDT of them."""
+    """Figs. 24 and 25: the reference's vertices, connected by calculated tables and by NN3, against CDT of them.
+
+    "rest by CDT": ē_worst where the paper's NN3 has no tables for sub-contours, so that CDT decides there.
+    """
 
     def calculated(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, entries: np.ndarray) -> np.ndarray:
         return tables.connection_tables(points, n_contour, n_inner)[tuple(entries.T)]
 
-    found = [{"figure": 24, "networks": PAPER, **_triangulated(group, calculated)}]
+    found, folder = [{"figure": 24, "networks": PAPER, **_triangulated(group, calculated)}], config["folders"]["models"]
+    n, m = group.contour.shape[1], group.inner.shape[1]
     for name, role in roles.items():
-        key = group.contour.shape[1], group.inner.shape[1]
-        if name != PAPER or paper.is_trained("nn3", key, config["folders"]["models"]):
+        if name != PAPER:
             found.append({"figure": 25, "networks": name, **given_connected(role, group)})
+        elif paper.is_trained("nn3", (n, m), folder):
+            rest = given_connected(asking(paper.table_network(folder, n, m), n, m, by_row=False), group)["worst"]
+            found.append({"figure": 25, "networks": name, **given_connected(role, group), "rest by CDT": rest})
     return found
 
 

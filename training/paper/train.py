@@ -15,11 +15,11 @@ from tessera.paper_placement import GRID
 
 from ..provenance import code_version
 from . import settings
-from .batches import count_rows, from_groups, from_rows, table_rows
+from .batches import count_rows, from_groups, from_rows, from_tables, mixed
 from .data import Group, Population, load
 from .fitting import BATCH, fit
 from .networks import Network, nn1, nn2, nn3
-from .sampling import kept_tables, learnt_group, make_tables
+from .sampling import drawn_in, kept_tables, random_tables, reference_tables
 
 ROLES = ("nn1", "nn2", "nn3")
 
@@ -74,26 +74,31 @@ def train_nn2(config: dict, population: Population) -> None:
 
 def train_nn3(config: dict, population: Population, n_inner: int) -> None:
     """Section 2.5, Algorithm 4."""
-    n = population.contour.shape[1]
-    rows = table_rows(tables_of(config, population, n_inner))
-    notes = {"numbers": [n_inner], "meshes": [config["nn3"]["meshes"] * (1 if n_inner else 20)]}
+    n, wanted = population.contour.shape[1], config["nn3"]
+    random, reference = tables_of(config, population, n_inner)
     run(
         config,
         "nn3",
         f"nn3_{n}_{n_inner}",
         lambda: nn3(n, n_inner),
-        lambda: (from_rows([rows]), [len(rows[0])]),
-        notes,
+        lambda: (
+            from_tables([mixed(random, (reference, wanted["share"]))]),
+            [len(random["points"]) + len(reference["points"])],
+        ),
+        {"numbers": [n_inner]},
+        wanted["longer"].get(f"{n}_{n_inner}", wanted["steps"]),
     )
 
 
-def tables_of(config: dict, population: Population, n_inner: int) -> dict[str, np.ndarray]:
-    """The points and tables that NN3 of a group learns from, made once."""
+def tables_of(config: dict, population: Population, n_inner: int) -> tuple[dict, dict]:
+    """What NN3 of a group learns from: tables of random vertices, made once, and of the reference's."""
     n, wanted = population.contour.shape[1], config["nn3"]
     rng = np.random.default_rng((wanted["seed"], n, n_inner))
     file = config["folders"]["data"] / f"tables-{n:02d}-{n_inner:02d}.npz"
-    group = learnt_group(population, n_inner, wanted["meshes"])
-    return kept_tables(file, lambda: make_tables(rng, group, n_inner))
+    drawn = drawn_in(population, n_inner, wanted["meshes"])
+    random = kept_tables(file, lambda: random_tables(rng, *drawn, n_inner))
+    group = population.group(n_inner).rows(slice(0 if n_inner == 0 else None))
+    return random, reference_tables(chosen(group, wanted["references"]))
 
 
 def chosen(group: Group, most: int) -> Group:
