@@ -92,9 +92,8 @@ def _cut_faces(
     keys, ends = np.unique(of[:, None] * n + ends, return_inverse=True)
     start, end = ends.reshape(-1, 2).T
     face, vertex = np.divmod(keys, n)
-    net = Net(
-        graph.points[vertex], _spacing(graph, edge_length, target)[vertex], np.searchsorted(cut, face), start, end
-    )
+    spacing = _spacing(graph, edge_length, target)[vertex]
+    net = Net(graph.points[vertex], spacing, np.searchsorted(cut, face), start, end)
     left, right = np.searchsorted(keys, left_of * n + left), np.searchsorted(keys, right_of * n + right)
     return net, vertex, left, right, Wanted(edge_length[region[cut]], region[cut], target)
 
