@@ -6,6 +6,7 @@ until it sees something in it.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,8 +18,8 @@ from .spacing import Target, graded_spacing, natural_segments, points_between, w
 
 # So many of the closest vertices are looked at, or if none of them is seen, of the next ones.
 _AT_ONCE = 32
-# Vertices whose windows are looked at together: bounds the memory.
-_BLOCK = 1 << 10
+# Vertices whose windows are looked at together, and pairs in them: bounds the memory.
+_BLOCK, _PAIRS = 1 << 10, 1 << 22
 
 
 @dataclass(frozen=True)
@@ -185,19 +186,28 @@ def _vertices(net: Net, tips: np.ndarray, of: np.ndarray, segment: np.ndarray, r
 
 def _hidden(net: Net, tip, vertex, of, segment_of, segment, n_tips: int) -> np.ndarray:
     """(k,) whether vertices (k,) are hidden from tips (k,), by the segments of the tips' windows."""
-    count = np.bincount(segment_of, minlength=n_tips)
-    one, other = runs((np.cumsum(count) - count)[of], count[of])
-    other = segment[other]
-    points = net.points
+    points, hidden = net.points, np.zeros(len(tip), dtype=bool)
     low, high = segment_boxes(points, tip, vertex)
-    lowest, highest = segment_boxes(points, net.start, net.end)
-    meet = np.ones(len(one), dtype=bool)
-    for axis in (0, 1):
-        meet &= lowest[other, axis] <= high[one, axis]
-        meet &= highest[other, axis] >= low[one, axis]
-    one, other = one[meet], other[meet]
-    crossed = segments_cross(points[tip[one]], points[vertex[one]], points[net.start[other]], points[net.end[other]])
-    return np.bincount(one, crossed, minlength=len(tip)) > 0
+    lowest, highest = segment_boxes(points, net.start[segment], net.end[segment])
+    for one, other in _with_all_of(of, segment_of, n_tips):
+        meet = np.ones(len(one), dtype=bool)
+        for axis in (0, 1):
+            meet &= lowest[other, axis] <= high[one, axis]
+            meet &= highest[other, axis] >= low[one, axis]
+        one, other = one[meet], segment[other[meet]]
+        ends = points[tip[one]], points[vertex[one]], points[net.start[other]], points[net.end[other]]
+        hidden[one[segments_cross(*ends)]] = True
+    return hidden
+
+
+def _with_all_of(of: np.ndarray, other_of: np.ndarray, n: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Pairs of each row of `of` (k,) with all rows of `other_of`, sorted, that have the same number of n; in blocks."""
+    count = np.bincount(other_of, minlength=n)
+    first, count = (np.cumsum(count) - count)[of], count[of]
+    block = (np.cumsum(count) - count) // _PAIRS
+    for rows in np.split(np.arange(len(of)), np.flatnonzero(np.diff(block)) + 1):
+        run, other = runs(first[rows], count[rows])
+        yield rows[run], other
 
 
 def _costs(place: _Place, tips, of, seen, near_of, near, longest: np.ndarray) -> np.ndarray:
@@ -214,19 +224,17 @@ def _costs(place: _Place, tips, of, seen, near_of, near, longest: np.ndarray) ->
     for vertex, toward in ((tip, along), (seen, -along)):
         for gap in _gaps(place, vertex, toward):
             cost += end_cost(gap)
-    count = np.bincount(near_of, minlength=len(tips))
-    one, other = runs((np.cumsum(count) - count)[of], count[of])
-    other = near[other]
-    one, other = one[other != seen[one]], other[other != seen[one]]
-    offset = net.points[other] - net.points[tip[one]]
-    unit, whole = along[one] / length[one, None], length[one]
-    forward = offset[:, 0] * unit[:, 0] + offset[:, 1] * unit[:, 1]
-    aside = np.abs(unit[:, 0] * offset[:, 1] - unit[:, 1] * offset[:, 0])
-    beyond = np.maximum(np.maximum(-forward, forward - whole), 0)
-    ends = net.spacing[tip[one]], net.spacing[seen[one]]
-    spacing = graded_spacing(np.clip(forward, 0, whole), whole, *ends, edge_length[one])
     relative = np.full(len(seen), np.inf)
-    np.minimum.at(relative, one, np.hypot(beyond, aside) / spacing)
+    for one, other in _with_all_of(of, near_of, len(tips)):
+        one, other = one[near[other] != seen[one]], near[other[near[other] != seen[one]]]
+        offset = net.points[other] - net.points[tip[one]]
+        unit, whole = along[one] / length[one, None], length[one]
+        forward = offset[:, 0] * unit[:, 0] + offset[:, 1] * unit[:, 1]
+        aside = np.abs(unit[:, 0] * offset[:, 1] - unit[:, 1] * offset[:, 0])
+        beyond = np.maximum(np.maximum(-forward, forward - whole), 0)
+        ends = net.spacing[tip[one]], net.spacing[seen[one]]
+        spacing = graded_spacing(np.clip(forward, 0, whole), whole, *ends, edge_length[one])
+        np.minimum.at(relative, one, np.hypot(beyond, aside) / spacing)
     narrow = np.maximum(0.6 - relative, 0) / 0.6
     return cost + 4 * narrow**2 + 2 * narrow
 
