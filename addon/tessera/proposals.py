@@ -14,10 +14,12 @@ import numpy as np
 from .chords import end_cost
 from .nearby import Boxes, along_curve, build_boxes, meeting, runs
 from .predicates import segments_cross
-from .spacing import Target, graded_spacing, natural_segments, points_between, wanted_along
+from .spacing import GRADING, Target, graded_spacing, natural_segments, points_between, wanted_along
 
 # So many of the closest vertices are looked at, or if none of them is seen, of the next ones.
 _AT_ONCE = 32
+# Bridges should not come as near to vertices as so many spacings.
+_NARROW = 0.6
 # Vertices whose windows are looked at together, and pairs in them: bounds the memory.
 _BLOCK, _PAIRS = 1 << 10, 1 << 22
 
@@ -225,8 +227,17 @@ def _costs(place: _Place, tips, of, seen, near_of, near, longest: np.ndarray) ->
         for gap in _gaps(place, vertex, toward):
             cost += end_cost(gap)
     relative = np.full(len(seen), np.inf)
+    # The spacing along a bridge is nowhere more than this.
+    most = np.maximum(net.spacing[tip], net.spacing[seen]) + 0.5 * GRADING * length
+    low, high = segment_boxes(net.points, tip, seen)
+    low, high = low - _NARROW * most[:, None], high + _NARROW * most[:, None]
     for one, other in _with_all_of(of, near_of, len(tips)):
-        one, other = one[near[other] != seen[one]], near[other[near[other] != seen[one]]]
+        other = near[other]
+        close = other != seen[one]
+        for axis in (0, 1):
+            place = net.points[other, axis]
+            close &= (place >= low[one, axis]) & (place <= high[one, axis])
+        one, other = one[close], other[close]
         offset = net.points[other] - net.points[tip[one]]
         unit, whole = along[one] / length[one, None], length[one]
         forward = offset[:, 0] * unit[:, 0] + offset[:, 1] * unit[:, 1]
@@ -235,7 +246,7 @@ def _costs(place: _Place, tips, of, seen, near_of, near, longest: np.ndarray) ->
         ends = net.spacing[tip[one]], net.spacing[seen[one]]
         spacing = graded_spacing(np.clip(forward, 0, whole), whole, *ends, edge_length[one])
         np.minimum.at(relative, one, np.hypot(beyond, aside) / spacing)
-    narrow = np.maximum(0.6 - relative, 0) / 0.6
+    narrow = np.maximum(_NARROW - relative, 0) / _NARROW
     return cost + 4 * narrow**2 + 2 * narrow
 
 
