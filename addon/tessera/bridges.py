@@ -15,47 +15,29 @@ ends on; from the loop there, which starts farther left, in the same way, until 
 loop there are two ways from where it is entered to where it is left, so all that this way cannot avoid is farther left
 than the hole (or is its leftmost vertex), and all that the way to the right cannot avoid is farther right: v blocks one
 of them at most. So it is for a vertex within a bridge, from where the bridge itself leads to the left and to the right.
+
+Whatever bridges there are already, that holds for the next one. So they are found in rounds: in each, every vertex that
+still needs one looks for it by itself (`proposals.py`), and of those that meet or come near each other, the shortest
+are taken.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from functools import partial
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from .chords import end_cost
 from .contour import neighbours
 from .division import Polygons
 from .faces import find_faces
-from .nearby import Boxes
+from .nearby import build_boxes, meeting, runs
 from .predicates import segments_cross
-from .spacing import Target, graded_spacing, natural_segments, points_between, wanted_along
+from .proposals import Net, Proposals, Wanted, pieces, propose
+from .spacing import Target
 
-# A bridge is looked for within so many spacings of its start at first; and so many of the closest vertices at a time.
-_NEAR = 8.0
-_AT_ONCE = 32
-
-
-@dataclass(frozen=True)
-class Net:
-    """What bounds a domain, and bridges: points (n, 2), their spacing (n,), and segments from `start` to `end` (e,).
-
-    A point by itself is a segment to itself.
-    """
-
-    points: np.ndarray
-    spacing: np.ndarray
-    start: np.ndarray
-    end: np.ndarray
-
-    def ends(self) -> tuple[np.ndarray, np.ndarray]:
-        """The left and the right end (k,) of each segment that is not upright."""
-        x = self.points[:, 0]
-        rises = np.sign(x[self.end] - x[self.start])
-        left, right = np.where(rises > 0, [self.start, self.end], [self.end, self.start])[:, rises != 0]
-        return left, right
+# Bridges of one round keep so many spacings apart, in the first few rounds; then it is enough that they do not meet.
+_APART, _GENTLE = 0.6, 6
 
 
 def bridge_holes(
@@ -70,33 +52,31 @@ def bridge_holes(
     loops: simple counter-clockwise polygons (k, 2) that do not meet; region (m,) int: loops of one number, one of them
     the outer contour and the others its holes, bound one region; is_hole: (m,) bool. The polygons' owner is their
     region; a contour without holes is a polygon itself. edge_length, one or one for each region (m,), and target: as of
-    `division.divide`, and new vertices along a bridge are spaced as along its cuts. A loop over the holes, each of
-    which takes array operations on what is near it, and one copy of all.
+    `division.divide`, and new vertices along a bridge are spaced as along its cuts.
     """
     size = np.array([len(loop) for loop in loops], dtype=np.int64)
-    first = np.cumsum(size) - size
-    points = [np.concatenate(loops)]
-    of = [np.repeat(region, size)]
+    points, of = np.concatenate(loops), np.repeat(region, size)
     before, after = neighbours(size)
+    tail, head = np.zeros((2, 0), dtype=np.int64)
+    numbers = np.unique(region[is_hole])
+    (own,) = np.nonzero(np.isin(of, numbers))
+    if len(own):
+        longest = np.broadcast_to(np.asarray(edge_length, dtype=np.float64), len(loops))[numbers]
+        local = np.cumsum(np.isin(of, numbers)) - 1
+        lengths = np.linalg.norm(points[after] - points, axis=1)
+        spacing = 0.5 * (lengths + lengths[before])
+        net = Net(points[own], spacing[own], np.searchsorted(numbers, of[own]), np.arange(len(own)), local[after[own]])
+        loop = np.repeat(np.arange(len(size)), size)
+        # The leftmost (then lowest) vertex of each hole, and the rightmost (then highest) one.
+        first = (np.cumsum(size) - size)[is_hole]
+        tips = (local[np.lexsort((*side.T[::-1], loop))[first]] for side in (points, -points))
+        net = add_bridges(net, *tips, Wanted(longest, numbers, target))
+        number = np.concatenate([own, len(points) + np.arange(len(net.points) - len(own))])
+        tail, head = number[net.start[len(own) :]], number[net.end[len(own) :]]
+        points = np.concatenate([points, net.points[len(own) :]])
+        of = np.concatenate([of, numbers[net.group[len(own) :]]])
     # With the domain on the left, holes run clockwise.
     following = np.where(np.repeat(is_hole, size), before, after)
-    tails, heads = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
-    n_points = len(points[0])
-    edge_length = np.broadcast_to(np.asarray(edge_length, dtype=np.float64), len(loops))
-    for number in np.unique(region[is_hole]):
-        mine = np.flatnonzero(region == number)
-        own = np.concatenate([np.arange(first[k], first[k] + size[k]) for k in mine])
-        longest = float(edge_length[number])
-        wanted = partial(wanted_between, target, number, longest)
-        added, tail, head = _bridges(points[0][own], size[mine], is_hole[mine], longest, wanted)
-        own = np.concatenate([own, n_points + np.arange(len(added))])
-        points.append(added)
-        of.append(np.full(len(added), number))
-        tails.append(own[tail])
-        heads.append(own[head])
-        n_points += len(added)
-    points, of = np.concatenate(points), np.concatenate(of)
-    tail, head = np.concatenate(tails), np.concatenate(heads)
     n, s = len(following), len(tail)
     origin = np.concatenate([np.arange(n), tail, head])
     back = np.concatenate([np.full(n, -1), n + s + np.arange(s), n + np.arange(s)])
@@ -105,158 +85,103 @@ def bridge_holes(
     return points, Polygons(corners, count, of[corners[np.cumsum(count) - count]])
 
 
-def wanted_between(target: Target | None, region: int, longest: float, turned: float, ends: np.ndarray) -> np.ndarray:
-    """The target of a region along a cut from ends[0] to ends[1], times `turned` (1 or -1): (1, 1) or (1, steps)."""
-    if target is None:
-        return np.array([[longest]])
-    return wanted_along(turned * ends[:1], turned * ends[1:], np.array([region]), target)
-
-
-def _bridges(
-    points: np.ndarray, size: np.ndarray, is_hole: np.ndarray, edge_length: float, wanted: Callable
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Bridges of one region: the points to add (k, 2), and the bridges' segments by the numbers of their ends (s,)."""
-    before, after = neighbours(size)
-    lengths = np.linalg.norm(points[after] - points, axis=1)
-    net = Net(points, 0.5 * (lengths + lengths[before]), np.arange(len(points)), after)
-    loop = np.repeat(np.arange(len(size)), size)
-    # The leftmost (then lowest) vertex of each hole, and the rightmost (then highest) one.
-    tips = (np.lexsort((*side.T[::-1], loop))[(np.cumsum(size) - size)[is_hole]] for side in (points, -points))
-    net = add_bridges(net, *tips, edge_length, wanted)
-    return net.points[len(points) :], net.start[len(points) :], net.end[len(points) :]
-
-
-def add_bridges(net: Net, left: np.ndarray, right: np.ndarray, edge_length: float, wanted: Callable) -> Net:
+def add_bridges(net: Net, left: np.ndarray, right: np.ndarray, wanted: Wanted) -> Net:
     """A net with bridges from some vertices to the left, and from some to the right, that have none.
 
     left, right (k,): they see a vertex farther left (or right), and nothing of the net goes there from them.
-    edge_length: the longest target; wanted: 1 or -1 (what points must be multiplied by to be where they are) and the
-    ends (2, 2) of a bridge -> the target along it, (1, 1) or (1, steps).
     """
     for tips, turned in ((left, 1.0), (right, -1.0)):
-        boxes = Boxes(*_boxes(net.points, net.start, net.end))
-        x, y = net.points[tips].T
-        for tip in tips[np.lexsort((y, x))]:  # from left to right
-            net = _with_bridge(net, boxes, tip, edge_length, partial(wanted, turned))
+        tips = np.setdiff1d(tips, net.ends()[1])
+        tips = tips[np.lexsort((*net.points[tips].T[::-1], net.group[tips]))]
+        number = 0
+        while len(tips):
+            bridges = propose(net, tips, replace(wanted, turned=turned))
+            taken = _apart(net, bridges, number < _GENTLE)
+            net = _with_bridges(net, bridges, taken)
+            tips = tips[~taken]
+            number += 1
         # Half a turn, which is exact: what is to the right then lies to the left.
-        net = Net(-net.points, net.spacing, net.start, net.end)
+        net = replace(net, points=-net.points)
     return net
 
 
-def _boxes(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The lower and upper corners (e, 2) of the segments' bounding boxes."""
-    return np.minimum(points[start], points[end]), np.maximum(points[start], points[end])
+def _apart(net: Net, bridges: Proposals, gently: bool) -> np.ndarray:
+    """(k,) which bridges to take: the shortest, and then each that is away from all that are taken.
+
+    gently: near ones are not taken either.
+    """
+    start, end = net.points[bridges.tip], net.points[bridges.goal]
+    away = _APART * np.maximum(net.spacing[bridges.tip], net.spacing[bridges.goal]) if gently else np.zeros(len(start))
+    group = net.group[bridges.tip]
+    low, high = np.minimum(start, end), np.maximum(start, end)
+    # Far above any rounding of new vertices: bridges that are farther apart than this do not meet.
+    away = np.maximum(away, 1e-12 * (np.abs(low) + np.abs(high)).max(axis=1))
+    one, other = meeting(build_boxes(low, high, group), low - away[:, None], high + away[:, None], group)
+    one, other = one[one != other], other[one != other]
+    near = segment_distances(start[one], end[one], start[other], end[other]) <= away[one]
+    # One bridge may lead to where another one starts.
+    near &= (bridges.goal[one] != bridges.tip[other]) & (bridges.tip[one] != bridges.goal[other])
+    shared = bridges.goal[one] == bridges.goal[other]
+    if not gently:
+        near[shared] = _meeting(net, bridges, one[shared], other[shared])
+    one, other = one[near], other[near]
+    rank = np.empty(len(start), dtype=np.int64)
+    rank[np.lexsort((np.arange(len(start)), np.linalg.norm(end - start, axis=1)))] = np.arange(len(start))
+    swap = rank[one] > rank[other]
+    one, other = np.where(swap, other, one), np.where(swap, one, other)  # the shorter first
+    taken, open_ = np.zeros((2, len(start)), dtype=bool)
+    open_[:] = True
+    while open_.any():
+        waits = np.zeros(len(start), dtype=bool)
+        waits[other[open_[one]]] = True
+        taken |= open_ & ~waits
+        open_ &= waits
+        open_[other[taken[one]]] = False
+    return taken
 
 
-def _with_bridge(net: Net, boxes: Boxes, tip: int, edge_length: float, wanted: Callable) -> Net:
-    """The net with a bridge from vertex `tip` to the left, if it has none; boxes: of the segments, and then of more."""
-    points, here = net.points, net.points[tip]
-    reach, largest = _NEAR * max(net.spacing[tip], edge_length), 2 * boxes.extent
-    while True:
-        reach = min(reach, largest)
-        around, near = _window(net, boxes, here - reach, here + [0, reach])
-        joined = np.concatenate([around.end[around.start == tip], around.start[around.end == tip]])
-        if (points[joined, 0] < here[0]).any():
-            return net
-        near = near[points[near, 0] < here[0]]
-        seen = _visible(around, tip, near)
-        if len(seen) and (reach >= largest or np.linalg.norm(points[seen[0]] - here) <= 0.5 * reach):
-            break
-        if reach >= largest:
-            raise AssertionError("a hole's leftmost vertex sees one farther left")
-        reach *= 2
-    goal = seen[np.argmin(_costs(around, tip, seen, near, edge_length))]
-    added = _points_on(around, tip, goal, near, wanted)
-    numbers = np.concatenate([[tip], len(points) + np.arange(len(added)), [goal]])
-    path = np.concatenate([points[[tip]], added, points[[goal]]])
-    boxes.add(*_boxes(path, np.arange(len(path) - 1), np.arange(1, len(path))))
-    length = np.linalg.norm(np.diff(path, axis=0), axis=1)
+def segment_distances(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> np.ndarray:
+    """(k,) the distance of segments ab and cd, (k, 2) each, a != b and c != d; 0 where they meet."""
+    away = np.minimum.reduce([_away(a, c, d), _away(b, c, d), _away(c, a, b), _away(d, a, b)])
+    away[segments_cross(a, b, c, d)] = 0
+    return away
+
+
+def _away(point: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """(k,) the distance of points (k, 2) to segments."""
+    along, offset = end - start, point - start
+    share = np.clip(np.sum(offset * along, axis=1) / np.sum(along * along, axis=1), 0, 1)
+    return np.hypot(*(offset - share[:, None] * along).T)
+
+
+def _meeting(net: Net, bridges: Proposals, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """(p,) whether pairs of bridges to the same goal meet before it."""
+    bridge, start, end = pieces(net, bridges)
+    count = bridges.count
+    first = np.cumsum(count) - count
+    pair, a = runs(first[one], count[one])
+    row, b = runs(first[other[pair]], count[other[pair]])
+    pair, a = pair[row], a[row]
+    last = (a == (first + count - 1)[bridge[a]]) & (b == (first + count - 1)[bridge[b]])
+    met = segments_cross(start[a], end[a], start[b], end[b]) | (~last & (end[a] == end[b]).all(axis=1))
+    return np.bincount(pair, met, minlength=len(one)) > 0
+
+
+def _with_bridges(net: Net, bridges: Proposals, taken: np.ndarray) -> Net:
+    """The net with the bridges that are taken (k,)."""
+    bridge, start, end = pieces(net, bridges)
+    length = np.linalg.norm(end - start, axis=1)
+    kept = taken[bridge]
+    inner = np.diff(bridge, append=-1) == 0  # of pieces: not the last one
+    added = end[kept & inner]
+    spacing = 0.5 * (length + np.append(length[1:], 0))[kept & inner]
+    number = np.cumsum(kept & inner) + len(net.points) - 1
+    head = np.where(inner, number, bridges.goal[bridge])[kept]
+    tail = np.where(np.diff(bridge, prepend=-1) == 0, np.append(0, number[:-1]), bridges.tip[bridge])[kept]
     return Net(
-        np.concatenate([points, added]),
-        np.concatenate([net.spacing, 0.5 * (length[1:] + length[:-1])]),
-        np.concatenate([net.start, numbers[:-1]]),
-        np.concatenate([net.end, numbers[1:]]),
+        np.concatenate([net.points, added]),
+        np.concatenate([net.spacing, spacing]),
+        np.concatenate([net.group, net.group[bridges.tip[bridge[kept & inner]]]]),
+        np.concatenate([net.start, tail]),
+        np.concatenate([net.end, head]),
     )
-
-
-def _window(net: Net, boxes: Boxes, low: np.ndarray, high: np.ndarray) -> tuple[Net, np.ndarray]:
-    """The net with only the segments that meet a box, and its vertices (k,) in the box."""
-    segments = boxes.around(low, high)
-    start, end = net.start[segments], net.end[segments]
-    lowest, highest = _boxes(net.points, start, end)
-    meets = np.all((highest >= low) & (lowest <= high), axis=1)
-    start, end = start[meets], end[meets]
-    near = np.unique(np.concatenate([start, end]))
-    near = near[np.all((net.points[near] >= low) & (net.points[near] <= high), axis=1)]
-    return Net(net.points, net.spacing, start, end), near
-
-
-def _visible(net: Net, tip: int, near: np.ndarray) -> np.ndarray:
-    """Vertices of `near` that `tip` sees, the closest first: those among the closest few, or the next few, ..."""
-    here = net.points[tip]
-    near = near[np.argsort(np.sum((net.points[near] - here) ** 2, axis=1), kind="stable")]
-    start, end = net.points[net.start], net.points[net.end]
-    for first in range(0, len(near), _AT_ONCE):
-        part = near[first : first + _AT_ONCE]
-        hidden = segments_cross(here, net.points[part, None], start, end).any(axis=1)
-        if not hidden.all():
-            return part[~hidden]
-    return near[:0]
-
-
-def _costs(net: Net, tip: int, seen: np.ndarray, near: np.ndarray, edge_length: float) -> np.ndarray:
-    """Cost (k,) of bridges from `tip` to the vertices `seen`: long, stretched, sharp at their ends or near others."""
-    here, there = net.points[tip], net.points[seen]
-    along = there - here
-    length = np.hypot(along[:, 0], along[:, 1])
-    natural = natural_segments(length, net.spacing[tip], net.spacing[seen], edge_length)
-    cost = 2 * np.log(length) + 2 * np.log(natural / np.maximum(np.rint(natural), 1)) ** 2
-    for vertex, toward in ((np.full(len(seen), tip), along), (seen, -along)):
-        for gap in _gaps(net, vertex, toward):
-            cost += end_cost(gap)
-    offset = net.points[near] - here
-    forward = (offset @ along.T).T / length[:, None]
-    aside = np.abs(np.outer(along[:, 0], offset[:, 1]) - np.outer(along[:, 1], offset[:, 0])) / length[:, None]
-    beyond = np.maximum(np.maximum(-forward, forward - length[:, None]), 0)
-    spacing = graded_spacing(
-        np.clip(forward, 0, length[:, None]),
-        length[:, None],
-        net.spacing[tip],
-        net.spacing[seen][:, None],
-        edge_length,
-    )
-    relative = np.where(near == seen[:, None], np.inf, np.hypot(beyond, aside) / spacing).min(axis=1)
-    narrow = np.maximum(0.6 - relative, 0) / 0.6
-    return cost + 4 * narrow**2 + 2 * narrow
-
-
-def _gaps(net: Net, vertex: np.ndarray, toward: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Angles (k,) from a direction (k, 2) at a vertex (k,) to the next segments there, to its left and to its right."""
-    heading = np.arctan2(toward[:, 1], toward[:, 0])[:, None]
-    left, right = [], []
-    for one, other in ((net.start, net.end), (net.end, net.start)):
-        x, y = (net.points[other] - net.points[one]).T
-        angle = (np.arctan2(y, x) - heading) % (2 * np.pi)
-        at = (one == vertex[:, None]) & (net.start != net.end)
-        left.append(np.where(at, angle, 2 * np.pi).min(axis=1))
-        right.append(np.where(at, 2 * np.pi - angle, 2 * np.pi).min(axis=1))
-    return np.minimum(*left), np.minimum(*right)
-
-
-def _points_on(net: Net, tip: int, goal: int, near: np.ndarray, wanted: Callable) -> np.ndarray:
-    """The new vertices (k, 2) of the bridge from `tip` to `goal`; none where, rounded, they could spoil it."""
-    ends = net.points[[tip, goal]]
-    spacing = net.spacing[[tip, goal]]
-    most = np.array([np.iinfo(np.int64).max])
-    _, added = points_between(ends[:1], ends[1:], spacing[:1], spacing[1:], most, wanted(ends))
-    added[:, 1] = np.clip(added[:, 1], ends[:, 1].min(), ends[:, 1].max())
-    path = np.concatenate([ends[:1], added, ends[1:]])
-    monotonous = (np.diff(path[:, 0]) < 0).all()
-    apart = not (added[:, None] == net.points[near]).all(axis=2).any()
-    if not (monotonous and apart):
-        return added[:0]
-    start, end = net.points[net.start], net.points[net.end]
-    low, high = _boxes(net.points, net.start, net.end)
-    close = np.all((low <= path.max(axis=0)) & (high >= path.min(axis=0)), axis=1)
-    crossed = segments_cross(path[:-1, None], path[1:, None], start[close], end[close])
-    return added[:0] if crossed.any() else added

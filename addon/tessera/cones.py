@@ -13,6 +13,7 @@ import numpy as np
 
 _LEAF = 8
 _GROUP = 8  # points that go down the tree as one
+_LEAP = 3.0  # times the mean distance of points beside each other: farther apart, they are in two groups
 # Groups that go down the tree together: bounds the memory.
 _BLOCK = 1 << 10
 # Rounding must not leave out a box, or the last bit would depend on the shape of the tree.
@@ -115,7 +116,10 @@ def _groups(points: np.ndarray, domain: np.ndarray) -> np.ndarray:
     for shift, mask in ((8, 0x00FF00FF), (4, 0x0F0F0F0F), (2, 0x33333333), (1, 0x55555555)):
         cell = (cell | (cell << np.uint64(shift))) & np.uint64(mask)
     order = np.lexsort((cell[:, 0] | (cell[:, 1] << np.uint64(1)), domain))
-    _, first, count = np.unique(domain[order], return_index=True, return_counts=True)
+    # The curve leaps here and there, and a group across a leap would have all of the tree before it.
+    leap = np.hypot(*np.diff(points[order], axis=0).T)
+    first = np.flatnonzero(np.append(True, (np.diff(domain[order]) != 0) | (leap * len(leap) > _LEAP * leap.sum())))
+    count = np.diff(first, append=len(order))
     groups = -(-count // _GROUP)
     of = np.repeat(np.arange(len(groups)), groups)
     start = (np.arange(len(of)) - np.repeat(np.cumsum(groups) - groups, groups)) * _GROUP

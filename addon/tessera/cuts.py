@@ -10,14 +10,13 @@ right, right of it. So no vertex blocks both, and the faces are simple polygons,
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 
-from .bridges import Net, add_bridges, wanted_between
+from .bridges import add_bridges
 from .division import Polygons
 from .faces import find_faces
 from .graph import Faces, Graph, graph_faces, half_edges
+from .proposals import Net, Wanted
 from .rows import with_rows
 from .spacing import Target
 
@@ -32,36 +31,23 @@ def graph_polygons(
 
     edge_length: (r,) the longest target of each region; target: as of `division.divide`. Edges that stay lie between
     polygons and must be edges of the mesh; a point without edges is one from itself to itself. The polygons' owner is
-    their region. A loop over faces and over what lies in them.
+    their region.
     """
     faces = graph_faces(graph.points, graph.edges)
     region = np.full(faces.count, -1)
     region[faces.of_half_edge] = graph.sides.T.ravel()
     tails, heads, back = half_edges(graph.edges)
     inside = region[faces.of_half_edge] >= 0
-    points, spacing = [graph.points], _spacing(graph, edge_length, target)
-    bridges, count = [np.zeros((0, 3), dtype=np.int64)], len(graph.points)
-    for face, left, right in _tips(graph, faces, inside):
-        own = _of_face(graph, faces, face)
-        owner = region[face]
-        longest = float(edge_length[owner])
-        wanted = partial(wanted_between, target, owner, longest)
-        vertices, ends = np.unique(own, return_inverse=True)
-        start, end = ends.reshape(own.shape).T
-        net = Net(graph.points[vertices], spacing[vertices], start, end)
-        alone = start[start == end]
-        left, right = (np.searchsorted(vertices, tips) for tips in (left, right))
-        if len(alone) > _MANY:
-            net = with_rows(net, alone, owner, longest, target)
-            left, right = np.setdiff1d(left, net.ends()[1]), np.setdiff1d(right, net.ends()[0])
-        net = add_bridges(net, left, right, longest, wanted)
-        number = np.concatenate([vertices, count + np.arange(len(net.points) - len(vertices))])
-        points.append(net.points[len(vertices) :])
-        count += len(points[-1])
-        ends = number[net.start[len(start) :]], number[net.end[len(start) :]]
-        bridges.append(np.column_stack([*ends, np.full(len(ends[0]), owner)]))
-    points = np.concatenate(points)
-    tail, head, owner = np.concatenate(bridges).T
+    net, vertex, left, right, wanted = _cut_faces(graph, faces, region, inside, edge_length, target)
+    n, s = len(vertex), len(net.start)
+    alone = net.start[net.start == net.end]
+    many = np.bincount(net.group[alone], minlength=len(wanted.region)) > _MANY
+    net = with_rows(net, alone[many[net.group[alone]]], wanted)
+    net = add_bridges(net, left, right, wanted)
+    number = np.concatenate([vertex, len(graph.points) + np.arange(len(net.points) - n)])
+    points = np.concatenate([graph.points, net.points[n:]])
+    tail, head = number[net.start[s:]], number[net.end[s:]]
+    owner = wanted.region[net.group[net.start[s:]]]
     number = np.cumsum(inside) - 1
     twin = np.where(inside[back], number[back], -1)[inside]
     n, s = len(twin), len(tail)
@@ -86,15 +72,36 @@ def _spacing(graph: Graph, edge_length: np.ndarray, target: Target | None) -> np
     return spacing
 
 
-def _of_face(graph: Graph, faces: Faces, face: int) -> np.ndarray:
-    """The edges (k, 2) that bound a face, and those from each point in it to itself."""
-    edges = np.unique(np.flatnonzero(faces.of_half_edge == face) % len(graph.edges))
-    alone = np.flatnonzero(faces.of_point == face)
-    return np.concatenate([graph.edges[edges], np.column_stack([alone, alone])])
+def _cut_faces(
+    graph: Graph, faces: Faces, region: np.ndarray, inside: np.ndarray, edge_length: np.ndarray, target: Target | None
+) -> tuple[Net, np.ndarray, np.ndarray, np.ndarray, Wanted]:
+    """What bounds the faces that need bridges, each with points of its own; tips to the left and right; what is wanted.
+
+    Also gives the number in the graph of each of the net's points. A point in a face is an edge to itself.
+    """
+    n = len(graph.points)
+    (left_of, left), (right_of, right) = _tips(graph, faces, inside)
+    cut = np.union1d(left_of, right_of)
+    face, edge = np.divmod(
+        np.unique(faces.of_half_edge * len(graph.edges) + np.tile(np.arange(len(graph.edges)), 2)), len(graph.edges)
+    )
+    edge, face = edge[np.isin(face, cut)], face[np.isin(face, cut)]
+    (alone,) = np.nonzero(np.isin(faces.of_point, cut))
+    of = np.concatenate([face, faces.of_point[alone]])
+    ends = np.concatenate([graph.edges[edge], np.column_stack([alone, alone])])
+    keys, ends = np.unique(of[:, None] * n + ends, return_inverse=True)
+    start, end = ends.reshape(-1, 2).T
+    face, vertex = np.divmod(keys, n)
+    spacing = _spacing(graph, edge_length, target)[vertex]
+    net = Net(graph.points[vertex], spacing, np.searchsorted(cut, face), start, end)
+    left, right = np.searchsorted(keys, left_of * n + left), np.searchsorted(keys, right_of * n + right)
+    return net, vertex, left, right, Wanted(edge_length[region[cut]], region[cut], target)
 
 
-def _tips(graph: Graph, faces: Faces, inside: np.ndarray) -> list[tuple[int, np.ndarray, np.ndarray]]:
-    """Faces that need bridges, with the vertices to start from to the left and to the right."""
+def _tips(
+    graph: Graph, faces: Faces, inside: np.ndarray
+) -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
+    """The faces (k,) and the vertices (k,) in them from which bridges start to the left, and to the right."""
     face, vertex, block, n_blocks = _blocks(graph, faces, inside)
     rank = np.empty(len(graph.points), dtype=np.int64)
     rank[np.lexsort(graph.points.T[::-1])] = np.arange(len(rank))
@@ -114,10 +121,8 @@ def _tips(graph: Graph, faces: Faces, inside: np.ndarray) -> list[tuple[int, np.
     np.minimum.at(farthest[1], copy, np.where(root, -1, len(graph.points) - 1 - highest[block]))
     left = farthest[0, copy] == rank
     right = farthest[1, copy] == len(graph.points) - 1 - rank
-    return [
-        (int(number), np.unique(vertex[left & (face == number)]), np.unique(vertex[right & (face == number)]))
-        for number in np.unique(face[left | right])
-    ]
+    n = len(graph.points)
+    return tuple(np.divmod(np.unique(face[side] * n + vertex[side]), n) for side in (left, right))
 
 
 def _blocks(graph: Graph, faces: Faces, inside: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, int]:

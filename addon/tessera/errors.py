@@ -5,11 +5,12 @@ class ContourError(ValueError):
     """Input that cannot be meshed; the message says the cause, the place and the remedy.
 
     `reason` is a short machine-readable word: "not-finite", "out-of-range" (sizes whose squares overflow or vanish),
-    "too-few-points", "zero-area", "self-intersection", "crossing" (two loops cross, or run along each other; a line
-    crosses something), "overlap" (of two regions), "outside" (a point or line that is not in the domain), "on-contour"
-    (one that lies on its boundary), "open", "not-planar", "edge-length", "sizing" (a sizing that gives what is no
-    length), "too-many-triangles", "too-many-edges", "untrained-group" (the paper's own networks are asked for a contour
-    that none was trained for).
+    "too-few-points", "zero-area" (a contour that encloses nothing, or is lost in the tolerance within which contours
+    are joined), "self-intersection", "crossing" (two loops cross, or run along each other; a line crosses something),
+    "overlap" (of two regions), "outside" (a point or line that is not in the domain), "on-contour" (one that lies on
+    its boundary), "open", "not-planar", "edge-length", "sizing" (a sizing that gives what is no length),
+    "too-many-triangles", "too-many-edges", "untrained-group" (the paper's own networks are asked for a contour that
+    none was trained for).
     `place` is where it is, in the input's coordinates, or None where the cause has no single place.
     """
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .nearby import along_curve
 from .sampling import cut
 
 # Two sides that meet at more than this angle are a corner, not a thin part.
@@ -11,6 +12,8 @@ FACING = np.radians(45.0)
 _LEAF = 4
 _BLOCK = 1 << 14
 _MOST_ROUNDS = 30
+# How far rays are followed at first, and then on: shares of their reach.
+_SHARES = (1 / 64, 1 / 16, 1 / 4, 1.0)
 
 
 def thin_parts(
@@ -22,7 +25,7 @@ def thin_parts(
     that they start at, shorter than ``elements · longest``, and no farther apart than half of what they allow for an
     edge length, which is their length over ``elements``, but at least ``shortest``.
     """
-    tree = _boxes(start, end)
+    tree = _tree(start, end)
     pieces = cut(start, end, np.ceil(4 * np.linalg.norm(end - start, axis=1) / longest))
     froms, tos = [], []
     for _ in range(_MOST_ROUNDS):
@@ -45,52 +48,62 @@ def thin_parts(
 def first_exits(origin, direction, reach, start, end, tree) -> np.ndarray:
     """(n,) how far rays go until they leave the domain; infinite beyond `reach` or if not through a facing side.
 
-    origin, direction: (n, 2), of length 1; start, end, tree: the boundary's edges and their boxes.
+    origin, direction: (n, 2), of length 1; start, end, tree: the boundary's edges and the tree over them. Rays are
+    followed a little way at first, and on if they are still inside: what is far behind the side is not looked at.
     """
-    return np.concatenate(
-        [np.zeros(0)]
-        + [
-            _first_exits(origin[part], direction[part], reach[part], start, end, tree)
-            for part in (slice(first, first + _BLOCK) for first in range(0, len(origin), _BLOCK))
-        ]
-    )
+    across, open_ = np.full(len(origin), np.inf), np.arange(len(origin))
+    for share in _SHARES:
+        parts = np.array_split(open_, 1 + len(open_) // _BLOCK)
+        left = []
+        for part in parts:
+            across[part], out = _first_exits(origin[part], direction[part], reach[part], share, start, end, tree)
+            left.append(part[~out])
+        open_ = np.concatenate(left)
+    return across
 
 
-def _first_exits(origin, direction, reach, start, end, tree) -> np.ndarray:
-    """`first_exits` for one block: all rays go down the tree together, a level at a time."""
+def _first_exits(origin, direction, reach, share: float, start, end, tree) -> tuple[np.ndarray, np.ndarray]:
+    """`first_exits` for one block of rays over a share of their reach, and which of them leave the domain there (n,).
+
+    All rays go down the tree together, a level at a time.
+    """
+    margin, reach = 1e-9 * reach, share * reach
     ray, node = np.arange(len(origin)), np.zeros(len(origin), dtype=np.int64)
-    for level, (low, high) in enumerate(tree):
+    order, levels = tree
+    for level, (low, high) in enumerate(levels):
         if level:
             ray, node = np.repeat(ray, 2), np.repeat(2 * node, 2)
             node[1::2] += 1
         with np.errstate(divide="ignore", invalid="ignore"):
             sides = np.stack([low[node] - origin[ray], high[node] - origin[ray]]) / direction[ray]
-        # Not a number where a ray runs along a side of the box: that side says nothing.
-        enter = np.fmax.reduce(np.fmin.reduce(sides, axis=0), axis=1)
-        leave = np.fmin.reduce(np.fmax.reduce(sides, axis=0), axis=1)
-        met = (leave >= 0) & (enter <= leave + 1e-9 * reach[ray]) & (enter <= reach[ray])
+        # Not a number where a ray runs along a side of the box: then that coordinate says nothing.
+        enter = np.fmax.reduce(np.minimum.reduce(sides, axis=0), axis=1)
+        leave = np.fmin.reduce(np.maximum.reduce(sides, axis=0), axis=1)
+        met = (leave >= 0) & (enter <= leave + margin[ray]) & (enter <= reach[ray])
         ray, node = ray[met], node[met]
-    edge = np.minimum((node[:, None] * _LEAF + np.arange(_LEAF)).ravel(), len(start) - 1)
+    edge = order[(node[:, None] * _LEAF + np.arange(_LEAF)).ravel()]
     ray = np.repeat(ray, _LEAF)
     d, along, offset = direction[ray], end[edge] - start[edge], start[edge] - origin[ray]
     facing = d[:, 0] * along[:, 1] - d[:, 1] * along[:, 0]  # positive where the ray leaves through this edge
     with np.errstate(divide="ignore", invalid="ignore"):
         far = (offset[:, 0] * along[:, 1] - offset[:, 1] * along[:, 0]) / facing
-        share = (offset[:, 0] * d[:, 1] - offset[:, 1] * d[:, 0]) / facing
-    hit = (facing > 0) & (far > 0) & (far <= reach[ray]) & (share >= -1e-9) & (share <= 1 + 1e-9)
+        at = (offset[:, 0] * d[:, 1] - offset[:, 1] * d[:, 0]) / facing
+    hit = (facing > 0) & (far > 0) & (far <= reach[ray]) & (at >= -1e-9) & (at <= 1 + 1e-9)
     ray, far = ray[hit], far[hit]
     straight = facing[hit] / np.linalg.norm(along[hit], axis=1) >= np.cos(FACING)
     order = np.lexsort((~straight, far, ray))
     first = order[np.flatnonzero(np.diff(ray[order], prepend=-1))]
-    found = np.full(len(origin), np.inf)
+    found, out = np.full(len(origin), np.inf), np.zeros(len(origin), dtype=bool)
+    out[ray] = True
     found[ray[first]] = np.where(straight[first], far[first], np.inf)
-    return found
+    return found, out
 
 
-def _boxes(start: np.ndarray, end: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Boxes of the nodes of each level of a binary tree over edges, in the order that they have along the contours."""
+def _tree(start: np.ndarray, end: np.ndarray) -> tuple[np.ndarray, list[tuple[np.ndarray, np.ndarray]]]:
+    """A tree over edges: their numbers (n,), near ones beside each other, and the boxes of each level's nodes."""
     depth = max(0, int(np.ceil(np.log2(len(start) / _LEAF))))
-    order = np.minimum(np.arange(_LEAF << depth), len(start) - 1)
+    order = along_curve(0.5 * (start + end), np.zeros(len(start), dtype=np.int64))
+    order = order[np.minimum(np.arange(_LEAF << depth), len(start) - 1)]
     low, high = np.minimum(start, end)[order], np.maximum(start, end)[order]
     nodes = [1 << level for level in range(depth + 1)]
-    return [(low.reshape(n, -1, 2).min(axis=1), high.reshape(n, -1, 2).max(axis=1)) for n in nodes]
+    return order, [(low.reshape(n, -1, 2).min(axis=1), high.reshape(n, -1, 2).max(axis=1)) for n in nodes]
