@@ -8,6 +8,7 @@ import numpy as np
 
 from .cavity import next_vertices
 from .scheme import contours_in_steps
+from .stars import total_in_turn
 from .steps import Steps
 from .stopwatch import Stopwatch
 
@@ -44,13 +45,12 @@ def mean_edge_lengths(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     count = (cells >= 0).sum(axis=1)
     contours = points[cells]
     lengths = np.linalg.norm(next_vertices(contours, count) - contours, axis=-1)
-    return np.where(cells >= 0, lengths, 0).sum(axis=1) / count
+    return _total(lengths, cells) / count
 
 
 def middles(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     """(c, 2) the mean of each cell's vertices."""
-    real = cells >= 0
-    return np.where(real[..., None], points[cells], 0).sum(axis=1) / real.sum(axis=1)[:, None]
+    return _total(points[cells], cells) / (cells >= 0).sum(axis=1)[:, None]
 
 
 def wanted_edge_lengths(
@@ -64,13 +64,18 @@ def wanted_edge_lengths(
     count = (cells >= 0).sum(axis=1)
     contours = points[cells]
     after = next_vertices(contours, count)
-    real = cells >= 0
     centre = middles(points, cells)[:, None]
     u, v = contours - centre, after - centre
-    area = np.where(real, np.maximum(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0], 0), 0)
+    area = np.maximum(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0], 0)
     of = np.repeat(owner, cells.shape[1])
     along = target((0.5 * (contours + after)).reshape(-1, 2), of).reshape(cells.shape)
     inside = target(((contours + after + centre) / 3).reshape(-1, 2), of).reshape(cells.shape)
-    along = np.where(real, along, 0).sum(axis=1) / count
-    inside = np.sqrt(area.sum(axis=1) / (area / inside**2).sum(axis=1))
+    along = _total(along, cells) / count
+    inside = np.sqrt(_total(area, cells) / _total(area / inside**2, cells))
     return mean_edge_lengths(points, cells) * inside / along
+
+
+def _total(values: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """(c, ...) sums of values (c, N, ...) over the vertices of cells (c, N); padding changes no last bit."""
+    real = (cells >= 0).reshape(*cells.shape, *[1] * (values.ndim - 2))
+    return total_in_turn(np.moveaxis(np.where(real, values, 0), 1, 0))

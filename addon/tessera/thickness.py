@@ -74,11 +74,14 @@ def _first_exits(origin, direction, reach, share: float, start, end, tree) -> tu
         if level:
             ray, node = np.repeat(ray, 2), np.repeat(2 * node, 2)
             node[1::2] += 1
-        with np.errstate(divide="ignore", invalid="ignore"):
-            sides = np.stack([low[node] - origin[ray], high[node] - origin[ray]]) / direction[ray]
-        # Not a number where a ray runs along a side of the box: then that coordinate says nothing.
-        enter = np.fmax.reduce(np.minimum.reduce(sides, axis=0), axis=1)
-        leave = np.fmin.reduce(np.maximum.reduce(sides, axis=0), axis=1)
+        enter, leave = np.full(len(ray), -np.inf), np.full(len(ray), np.inf)
+        for axis in (0, 1):
+            x, d = origin[:, axis][ray], direction[:, axis][ray]
+            with np.errstate(divide="ignore", invalid="ignore"):
+                one, other = (low[:, axis][node] - x) / d, (high[:, axis][node] - x) / d
+            # Not a number where a ray runs along a side of the box: then that coordinate says nothing.
+            enter = np.fmax(enter, np.minimum(one, other))
+            leave = np.fmin(leave, np.maximum(one, other))
         met = (leave >= 0) & (enter <= leave + margin[ray]) & (enter <= reach[ray])
         ray, node = ray[met], node[met]
     edge = order[(node[:, None] * _LEAF + np.arange(_LEAF)).ravel()]

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import tessera
+from tessera.assembly import mean_edge_lengths, middles, wanted_edge_lengths
 from tessera.scheme import mesh_contours
 from tessera.stopwatch import Stopwatch
 from tests.library.adversaries import padded, sector, with_straight_runs
@@ -78,3 +79,21 @@ def test_memory_does_not_grow_over_calls():
     assert after[0] - before[0] < 2e6, "bytes of the process, with all that onnxruntime holds"
     # What each call left behind would be 1 000 objects, an array being one; stores of small pieces fill with some 250.
     assert after[1] - before[1] < 500, "objects of Python"
+
+
+def test_lengths_of_cells_do_not_depend_on_their_padding():
+    """To the last bit: the widest cell of a batch is no matter of the others."""
+    rng = np.random.default_rng(7)
+    points, count = rng.normal(size=(400, 2)), rng.integers(3, 16, 300)
+    cells = np.where(np.arange(20) < count[:, None], rng.integers(0, 400, (300, 20)), -1)
+    owner = np.zeros(300, dtype=np.int64)
+
+    def target(points, owner):
+        return 1 + 0.1 * np.abs(points).sum(axis=1)
+
+    for width in (15, 16, 17):
+        narrow = cells[:, :width]
+        np.testing.assert_array_equal(mean_edge_lengths(points, narrow), mean_edge_lengths(points, cells))
+        np.testing.assert_array_equal(middles(points, narrow), middles(points, cells))
+        one, other = (wanted_edge_lengths(points, of, owner, target) for of in (narrow, cells))
+        np.testing.assert_array_equal(one, other)
