@@ -84,8 +84,10 @@ def test_memory_does_not_grow_over_calls():
 def test_lengths_of_cells_do_not_depend_on_their_padding():
     """To the last bit: the widest cell of a batch is no matter of the others."""
     rng = np.random.default_rng(7)
-    points, count = rng.normal(size=(400, 2)), rng.integers(3, 16, 300)
-    cells = np.where(np.arange(20) < count[:, None], rng.integers(0, 400, (300, 20)), -1)
+    count = rng.integers(3, 16, 300)[:, None]
+    angle = 2 * np.pi * (np.arange(20) + rng.uniform(-0.3, 0.3, (300, 20))) / count
+    points = np.stack([np.cos(angle), np.sin(angle)], axis=-1).reshape(-1, 2)
+    cells = np.where(np.arange(20) < count, np.arange(6000).reshape(300, 20), -1)
     owner = np.zeros(300, dtype=np.int64)
 
     def target(points, owner):
