@@ -14,6 +14,15 @@ T = TypeVar("T")
 # As in tessera.steps, which is not imported here, as enabling the add-on would load the mesher.
 Steps = Generator["Progress", None, T]
 
+# What a user reads for the stages of the library's steps.
+WORDS = {
+    "contours": "checking the outline",
+    "sizing": "finding the sizes",
+    "networks": "placing triangles",
+    "relaxation": "evening out",
+    "smoothing": "smoothing",
+}
+
 
 @dataclass(frozen=True)
 class Done:
@@ -35,10 +44,10 @@ def advance(steps: Steps[T], seconds: float) -> Progress | Done:
 
 
 def named(steps: Steps[T], name: str) -> Steps[T]:
-    """The same steps, with what they work on said before the stage."""
+    """The same steps, with what they work on said before the stage, in a user's words."""
     while True:
         try:
             progress = next(steps)
         except StopIteration as end:
             return end.value
-        yield replace(progress, stage=f"{name}: {progress.stage}")
+        yield replace(progress, stage=f"{name}: {WORDS[progress.stage]}")

@@ -4,14 +4,15 @@ import time
 
 import pytest
 
-from addon.blender.progress import Done, advance, named
+from addon import tessera
+from addon.blender.progress import WORDS, Done, advance, named
 from addon.tessera import Progress
 
 
 def work(n_steps=10, seconds=0.0):
     for number in range(n_steps):
         time.sleep(seconds)
-        yield Progress("stage", number / n_steps)
+        yield Progress("networks", number / n_steps)
     return "made"
 
 
@@ -32,7 +33,13 @@ def test_steps_say_what_they_work_on():
         while True:
             seen.append(next(steps))
     assert [progress.share for progress in seen] == [0, 0.25, 0.5, 0.75]
-    assert seen[0].stage == "Logo: stage" and end.value.value == "made"
+    assert seen[0].stage == "Logo: placing triangles" and end.value.value == "made"
+
+
+def test_there_are_words_for_every_stage():
+    square = [[0, 0], [1, 0], [1, 1], [0, 1]]
+    stages = {progress.stage for progress in tessera.mesh_in_steps([square], 0.2, smooth=1)}
+    assert stages == set(WORDS)
 
 
 def test_what_is_closed_stops():
