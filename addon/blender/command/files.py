@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 FORMATS = ("blend", "obj", "stl", "ply", "glb")
+OPEN_FILE = "the open file"
 _READABLE = (".blend", ".svg")
 
 
@@ -21,7 +22,7 @@ class Job:
     @property
     def name(self) -> str:
         """What the user sees."""
-        return str(self.source) if self.source else "the open file"
+        return str(self.source) if self.source else OPEN_FILE
 
 
 def jobs_of(inputs: list[str], output: str, format: str | None) -> list[Job]:

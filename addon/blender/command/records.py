@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from ..settings import Settings
+from .files import OPEN_FILE
 from .journal import write_atomically
 
 
@@ -42,8 +43,10 @@ class Record:
 
     @property
     def name(self) -> str:
-        """For the user: the file without its folder, and the curve, as curves of SVG files have the same names."""
-        return f"{Path(self.input).name}: {self.object}" if self.object else self.input
+        """For the user: the curve, after its file (without folder), as curves of SVG files have the same names."""
+        if self.object is None:
+            return self.input
+        return self.object if self.input == OPEN_FILE else f"{Path(self.input).name}: {self.object}"
 
     @property
     def line(self) -> str:
