@@ -102,7 +102,7 @@ class Settings:
         soft_high=2.0,
     )
     use_distance: bool = _setting(
-        False, "By Distance to Boundary", "Smaller triangles along the outline, larger ones away from it", "sizing"
+        False, "By Boundary", "Smaller triangles along the outline, larger ones away from it", "sizing"
     )
     distance_length: float = _length(
         0.0,

@@ -12,7 +12,7 @@ from .contour import checked_points, edges_of, meeting_error, signed_area, witho
 from .crossings import close_pairs, gaps
 from .errors import ContourError
 from .graph import Graph, graph_faces
-from .noding import TOLERANCE, Crossing, Noded, node_curves
+from .noding import TOLERANCE, Crossing, Noded, node_curves, tolerances
 from .regions import face_regions
 
 
@@ -77,7 +77,8 @@ def _nearly_meeting(cleaned: list[list[np.ndarray] | ContourError]) -> set[int]:
     unit, near = tolerance[domain, None], [domain[:0]]
     for pairs in close_pairs(start / unit, end / unit, domain, 1.0):
         pairs = pairs[loop[pairs[:, 0]] != loop[pairs[:, 1]]]
-        near.append(domain[pairs[gaps(start, end, pairs)[0] <= tolerance[domain[pairs[:, 0]]], 0]])
+        most = tolerances(start, end, pairs, tolerance[domain[pairs[:, 0]]])
+        near.append(domain[pairs[gaps(start, end, pairs)[0] <= most, 0]])
     return set(np.concatenate(near).tolist())
 
 

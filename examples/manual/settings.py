@@ -82,7 +82,7 @@ def curvature() -> list[Panel]:
 
 
 def distance() -> list[Panel]:
-    """By Distance to Boundary."""
+    """By Boundary."""
     panels = [Panel("off", tessera.mesh(PLATE, 0.3))]
     for near, reach in ((0.06, None), (0.06, 2.0)):
         mesh = tessera.mesh(PLATE, 0.3, sizing=tessera.by_distance(near, reach=reach))
