@@ -1,13 +1,15 @@
 """Linked meshes that follow their source: at each change of it they are meshed again, once Blender is idle.
 
-What is read of the source is compared with what the mesh was made of, so that nothing is done for nothing: a change of
-the selection is none, and after undo only what is out of date is meshed.
+Those that take long are drafted at each change, and meshed as their settings say when the source rests. What is read of
+the source is compared with what the mesh was made of, so that nothing is done for nothing: a change of the selection is
+none, and after undo only what is out of date is meshed.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 
 import bpy
 from bpy.app.handlers import persistent
@@ -15,13 +17,17 @@ from bpy.app.handlers import persistent
 from .kinds import shows_collection
 from .linked import fingerprint, is_linked, linked_settings, source_is_there
 
-# Meshes that took longer than this many seconds wait until their source has not changed for as long as _REST.
-_QUICK, _REST = 0.2, 0.4
+# Meshes that take longer than this many seconds are drafted while their source changes; drafts that take longer than
+# that wait, too, until it has not changed for as long as _REST.
+_QUICK, _QUICK_DRAFT, _REST = 0.1, 0.2, 0.3
 # A window that stands still for more seconds than this is no help: such meshes follow no longer by themselves.
 _TOO_LONG = 3.0
+# Steps of smoothing that a draft has instead of the networks' passes.
+_SMOOTH = 2
 
 _wanted: set[str] = set()  # names of meshes that may be out of date
-_slowest = 0.0  # seconds of the last time
+_seconds = float("inf")  # that the last meshes took, and the last drafts
+_draft_seconds = 0.0
 _at_work = False
 
 
@@ -31,32 +37,58 @@ def want(obj: bpy.types.Object) -> None:
         return
     _wanted.add(obj.name)
     if bpy.app.background:
-        _catch_up()
+        _finish()
         return
-    if bpy.app.timers.is_registered(_catch_up):
-        if _slowest < _QUICK:
-            return
-        bpy.app.timers.unregister(_catch_up)
-    bpy.app.timers.register(_catch_up, first_interval=0.0 if _slowest < _QUICK else _REST)
+    slow = _seconds > _QUICK
+    if slow:
+        _forget(_finish)
+        if _draft_seconds <= _QUICK_DRAFT:
+            _soon(_draft)
+    _soon(_finish, _REST if slow else 0.0)
 
 
-def _catch_up() -> None:
+def _soon(work: Callable[[], None], seconds: float = 0.0) -> None:
+    if not bpy.app.timers.is_registered(work):
+        bpy.app.timers.register(work, first_interval=seconds)
+
+
+def _forget(work: Callable[[], None]) -> None:
+    if bpy.app.timers.is_registered(work):
+        bpy.app.timers.unregister(work)
+
+
+def _draft() -> None:
+    """Draft what may be out of date, and leave it out of date."""
+    global _draft_seconds
+    _draft_seconds = sum(_mesh_wanted(draft=True).values()) or _draft_seconds
+
+
+def _finish() -> None:
     """Mesh what may be out of date."""
-    global _at_work, _slowest
-    names, started = sorted(_wanted), time.perf_counter()
+    global _seconds
+    seconds = _mesh_wanted()
     _wanted.clear()
+    _seconds = sum(seconds.values()) or _seconds
+    if not bpy.app.background:
+        for name, its in seconds.items():
+            stop_if_slow(bpy.data.objects[name], its)
+
+
+def _mesh_wanted(draft: bool = False) -> dict[str, float]:
+    """Mesh what is wanted, and how long each took that was out of date."""
+    global _at_work
+    seconds = {}
     _at_work = True
     try:
-        for name in names:
+        for name in sorted(_wanted):
             obj = bpy.data.objects.get(name)
             if is_linked(obj) and obj.tessera.automatic:
                 since = time.perf_counter()
-                mesh_again(obj)
-                if not bpy.app.background:
-                    stop_if_slow(obj, time.perf_counter() - since)
+                if mesh_again(obj, draft):
+                    seconds[name] = time.perf_counter() - since
     finally:
         _at_work = False
-        _slowest = time.perf_counter() - started
+    return seconds
 
 
 def stop_if_slow(obj: bpy.types.Object, seconds: float) -> None:
@@ -66,8 +98,11 @@ def stop_if_slow(obj: bpy.types.Object, seconds: float) -> None:
         obj.tessera.message = f"Meshing took {seconds:.0f} s, so Follow Changes was switched off: use Mesh Again"
 
 
-def mesh_again(obj: bpy.types.Object) -> bool:
-    """Mesh a linked object if it is out of date; whether it was. What is wrong with its source is noted at it."""
+def mesh_again(obj: bpy.types.Object, draft: bool = False) -> bool:
+    """Mesh a linked object if it is out of date; whether it was. What is wrong with its source is noted at it.
+
+    draft: in a third of the time, poorer, and it stays out of date.
+    """
     from . import meshing, results  # here, so that enabling the add-on does not load the mesher
 
     if not source_is_there(obj):
@@ -80,7 +115,9 @@ def mesh_again(obj: bpy.types.Object) -> bool:
             if obj.tessera.message:
                 obj.tessera.message = ""
             return False
-        results.rewrite(obj, meshing.finish(meshing.mesh_task(task)))
+        if draft:
+            task = replace(task, settings=replace(settings, passes=0, smooth=max(settings.smooth, _SMOOTH)))
+        results.rewrite(obj, meshing.finish(meshing.mesh_task(task)), not draft)
     except meshing.Failure as failure:
         obj.tessera.message = str(failure)
         return False
@@ -146,5 +183,5 @@ def unregister() -> None:
     """Listen no more."""
     for handlers, function in _handlers():
         handlers.remove(function)
-    if bpy.app.timers.is_registered(_catch_up):
-        bpy.app.timers.unregister(_catch_up)
+    for work in (_draft, _finish):
+        _forget(work)

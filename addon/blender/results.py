@@ -35,11 +35,14 @@ def write_results(made: list[Meshed]) -> list[bpy.types.Object]:
     return objects
 
 
-def rewrite(target: bpy.types.Object, meshed: Meshed) -> None:
-    """Give a linked mesh its new geometry."""
+def rewrite(target: bpy.types.Object, meshed: Meshed, current: bool = True) -> None:
+    """Give a linked mesh its new geometry; current: whether it is as its settings say, or else out of date."""
     write_again(target, list(meshed.pieces))
     remember_quality(target, [meshed])
-    mark_as_current(target, meshed)
+    if current:
+        mark_as_current(target, meshed)
+    else:
+        target.tessera.fingerprint = ""
 
 
 def select(

@@ -224,7 +224,7 @@ class Settings:
     passes: int = _setting(
         3,
         "Relaxation Passes",
-        "How often the networks place every inner vertex anew: more is more even and takes longer",
+        "How often the networks place every inner vertex anew: more is more even and takes longer, 0 is a draft",
         "finish",
         high=100,
         soft_high=10,

@@ -42,9 +42,9 @@ def mesh_by_levels(
 ) -> Steps[RegionMeshes]:
     """Mesh what outlines bound, with vertices as wanted.
 
-    corner_angle: in radians; passes: of relaxation; most: (d,) levels that each domain may have, at first as many as it
-    can. Where a level's boundary does not fit the coarser mesh, the domain starts again with a level less. Domains with
-    a graph have no levels.
+    corner_angle: in radians; passes: of relaxation, 0 for no improvement; most: (d,) levels that each domain may have,
+    at first as many as it can. Where a level's boundary does not fit the coarser mesh, the domain starts again with a
+    level less. Domains with a graph have no levels.
     """
     if most is None:
         most = np.full(len(target.most), MOST_LEVELS)
@@ -110,9 +110,10 @@ def _mesh_levels(
         vertices, triangles, region = refined.vertices, refined.triangles[stay], region[refined.parent][stay]
         if not len(triangles):
             break
-        improvement = improve(vertices, triangles, region, sizing, passes, watch, meshes.fixed)
-        vertices, triangles, region, more = yield from within(improvement, middle, end)
-        fallbacks[: len(more)] += more
+        if passes:
+            improvement = improve(vertices, triangles, region, sizing, passes, watch, meshes.fixed)
+            vertices, triangles, region, more = yield from within(improvement, middle, end)
+            fallbacks[: len(more)] += more
     return RegionMeshes(vertices, triangles, region, fallbacks, meshes.fixed), np.concatenate(failed)
 
 

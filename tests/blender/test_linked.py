@@ -76,6 +76,18 @@ def test_a_mesh_follows_each_change_when_it_is_wanted(square):
     assert right(mesh) == 1.5
 
 
+def test_a_draft_follows_first_and_leaves_the_mesh_out_of_date(square):
+    curve, mesh = square
+    mesh.tessera.settings.edge_length = 0.05
+    assert bpy.ops.tessera.mesh_again() == {"FINISHED"}
+    move(curve, 1, 2.0)
+    assert following.mesh_again(mesh, draft=True) and right(mesh) == 2.0
+    drafted = mesh.tessera.q_mean
+    assert following.mesh_again(mesh) and right(mesh) == 2.0
+    assert mesh.tessera.q_mean > drafted > 0.9
+    assert not following.mesh_again(mesh, draft=True)
+
+
 def test_nothing_is_meshed_for_nothing(square, monkeypatch):
     curve, mesh = square
     mesh.tessera.automatic = True

@@ -125,6 +125,13 @@ def test_steps_can_be_stopped_and_raise_what_mesh_raises():
     assert error.value.reason == "self-intersection"
 
 
+def test_without_passes_a_draft_comes_in_less_time():
+    draft, mesh = (tessera.mesh([spaced(60)], 0.05, passes=passes) for passes in (0, 3))
+    check_mesh(draft.vertices, draft.triangles, [spaced(60)], keep=False)
+    assert "relaxation" not in draft.report.seconds
+    assert draft.report.n_triangles == pytest.approx(mesh.report.n_triangles, rel=0.2)
+
+
 def test_more_passes_are_asked_for_by_number():
     few, many = (tessera.mesh([spaced(60)], 0.2, passes=passes) for passes in (0, 4))
     assert element_quality(many.vertices, many.triangles).mean() > element_quality(few.vertices, few.triangles).mean()
