@@ -14,7 +14,8 @@ import numpy as np
 from numba import njit
 
 from . import reference
-from .meshing import add, delaunay, improve, legalise, qualities, triangles
+from .improvement import improve
+from .meshing import add, delaunay, legalise, qualities, triangles
 
 # What a perfect mesh lacks nothing of: worst quality, mean quality, and the target size, of each edge and on average.
 _WORST, _MEAN, _SIZE = 1.0, 2.0, 0.3
