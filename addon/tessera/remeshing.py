@@ -24,8 +24,9 @@ TURNS = 4
 POOR = 0.93  # elements of less quality are worth a try
 _MORE = 0, -1, 1  # inner vertices than NN1 asks for
 # What a patch is worth: its worst quality, and so many times its mean; a new one has to be better by the gain. Of those
-# that are worth as much as `_GOOD` already, one in ten would get better, and by little.
-_MEAN, _GAIN, _GOOD = 3, 6e-3, 3.8
+# that are worth as much as `_GOOD` already, one in ten would get better, and by little. Nor is it worth a turn's time
+# where there are no more of them in a domain than `_FEW` of its elements.
+_MEAN, _GAIN, _GOOD, _BAD, _FEW = 3, 6e-3, 3.8, 3.6, 1e-3
 _RELAXED = 0.3  # share of the work that is done after the first relaxation
 
 
@@ -56,7 +57,7 @@ def improve(
             break
         for number in (0, 1):
             tried[number][triangles[(patch >= 0) & (kind[patch] == number)]] = True
-        contours, patch = _without_good(contours, patch, quality)
+        contours, patch = _worthwhile(contours, patch, quality, domain)
         if not len(contours):
             continue
         start, end = (_RELAXED + (1 - _RELAXED) * (turn + n) / TURNS for n in (0, 1))
@@ -75,12 +76,25 @@ def improve(
     return vertices, triangles, domain, fallbacks
 
 
-def _without_good(contours: np.ndarray, patch: np.ndarray, quality: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The contours of patches (c, N), and each element's patch (m,) or -1, without those that are good enough."""
+def _worthwhile(
+    contours: np.ndarray, patch: np.ndarray, quality: np.ndarray, domain: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The contours of patches (c, N), and each element's patch (m,) or -1, without those that are not worth a try."""
     taken = np.flatnonzero(patch >= 0)
-    poor = _worth(quality[taken], patch[taken], len(contours)) < _GOOD
+    worth = _worth(quality[taken], patch[taken], len(contours))
+    poor = worth < _GOOD
+    home = _homes(patch, domain, len(contours))
+    n_elements = np.bincount(domain)
+    poor &= (worth < _BAD) | (np.bincount(home[poor], minlength=len(n_elements)) > _FEW * n_elements)[home]
     anew = np.append(np.where(poor, np.cumsum(poor) - 1, -1), -1)
     return contours[poor], anew[patch]
+
+
+def _homes(patch: np.ndarray, domain: np.ndarray, count: int) -> np.ndarray:
+    """(count,) the domain of each patch."""
+    home, taken = np.zeros(count, dtype=domain.dtype), patch >= 0
+    home[patch[taken]] = domain[taken]
+    return home
 
 
 @dataclass(frozen=True)
@@ -107,8 +121,7 @@ def _remesh(
 ) -> Steps[_Remeshed]:
     """Mesh patches (c, N) again, once; patch: (m,) the one that each element is in, or -1."""
     n, taken = len(contours), np.flatnonzero(patch >= 0)
-    home = np.zeros(n, dtype=domain.dtype)
-    home[patch[taken]] = domain[taken]
+    home = _homes(patch, domain, n)
     # A patch is no reason for smaller elements than are wanted, though its own edges may be shorter.
     lengths = np.maximum(mean_edge_lengths(vertices, contours), sizing(middles(vertices, contours), home))
     points, new, made, fell = yield from mesh_cells(vertices, contours, lengths, watch, _MORE)
