@@ -96,7 +96,7 @@ def _mesh_levels(
     vertices, triangles, region, fallbacks = meshes.vertices, meshes.triangles, meshes.region, meshes.fallbacks
     number, failed = np.flatnonzero(coarsening.level >= top), []
     for level in range(top, -1, -1):
-        middle, end = 0.5 * ends[top - level], ends[top - level]
+        middle, end = (0.5 if passes else 1.0) * ends[top - level], ends[top - level]
         number = np.concatenate([number, np.full(len(vertices) - len(number), -1)])
         arcs = coarsening.arcs(level, number) if level < top else None
         sizing = _sizing(outlines, coarsening, level)
