@@ -17,9 +17,9 @@ from bpy.app.handlers import persistent
 from .kinds import shows_collection
 from .linked import fingerprint, is_linked, linked_settings, source_is_there
 
-# Meshes that take longer than this many seconds are drafted while their source changes; drafts that take longer than
-# that wait, too, until it has not changed for as long as _REST.
-_QUICK, _QUICK_DRAFT, _REST = 0.1, 0.2, 0.3
+# Meshes that take longer than this many seconds are drafted while their source changes. Where drafts take longer than
+# that, they wait, too, until it has not changed for as long as _REST.
+_QUICK, _QUICK_DRAFT, _REST = 0.1, 0.3, 0.5
 # A window that stands still for more seconds than this is no help: such meshes follow no longer by themselves.
 _TOO_LONG = 3.0
 # Steps of smoothing that a draft has instead of the networks' passes.
@@ -65,10 +65,11 @@ def _draft() -> None:
 
 def _finish() -> None:
     """Mesh what may be out of date."""
-    global _seconds
+    global _seconds, _draft_seconds
     seconds = _mesh_wanted()
     _wanted.clear()
     _seconds = sum(seconds.values()) or _seconds
+    _draft_seconds = 0.0  # the next changes are drafted again, however long the last draft took
     if not bpy.app.background:
         for name, its in seconds.items():
             stop_if_slow(bpy.data.objects[name], its)
