@@ -18,6 +18,7 @@ from tessera.cavity import is_inside
 from tessera.contour import clean_loop
 from tessera.division import divide
 from tessera.placement import place_inner_vertices
+from tessera.steps import finish
 from tessera.stopwatch import Stopwatch
 from tessera.transform import superimpose
 
@@ -85,7 +86,7 @@ def way_of_the_data() -> None:
     boundary = resample(curve, edge_length)
     division = divide(*bridge_holes([boundary], np.zeros(1, int), np.zeros(1, bool), edge_length), edge_length)
     target = mean_edge_lengths(division.points, division.cells)
-    vertices, triangles, _, _ = mesh_cells(division.points, division.cells, target, Stopwatch())
+    vertices, triangles, _, _ = finish(mesh_cells(division.points, division.cells, target, Stopwatch()))
     mesh = tessera.mesh([curve], edge_length)
     cells = [division.points[cell[cell >= 0]] for cell in division.cells]
     figure, axes = plt.subplots(2, 3, figsize=(12, 7.2))
