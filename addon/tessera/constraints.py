@@ -12,8 +12,10 @@ from .contour import checked_points, edges_of, meeting_error, signed_area, witho
 from .crossings import close_pairs, gaps
 from .errors import ContourError
 from .graph import Graph, graph_faces
-from .noding import TOLERANCE, Crossing, Noded, node_curves, tolerances
+from .noding import TOLERANCE, Crossing, Noded, node_curves
 from .regions import face_regions
+
+_SHARE = 0.1  # of the shorter of two edges: a larger gap is a part of the outlines' shape
 
 
 @dataclass(frozen=True)
@@ -63,7 +65,10 @@ def planar_domains(
 
 
 def _nearly_meeting(cleaned: list[list[np.ndarray] | ContourError]) -> set[int]:
-    """The domains whose contours come as near to each other as noding takes for a common place, and do not meet."""
+    """The domains whose contours come as near to each other as noding takes for a common place, and do not meet.
+
+    Not those whose edges there are hardly longer than that gap: fine outlines are told apart.
+    """
     several = {n: loops for n, loops in enumerate(cleaned) if not isinstance(loops, ContourError) and len(loops) > 1}
     if not several:
         return set()
@@ -77,7 +82,8 @@ def _nearly_meeting(cleaned: list[list[np.ndarray] | ContourError]) -> set[int]:
     unit, near = tolerance[domain, None], [domain[:0]]
     for pairs in close_pairs(start / unit, end / unit, domain, 1.0):
         pairs = pairs[loop[pairs[:, 0]] != loop[pairs[:, 1]]]
-        most = tolerances(start, end, pairs, tolerance[domain[pairs[:, 0]]])
+        shorter = np.hypot(*(end - start)[pairs].T).min(axis=0)
+        most = np.minimum(tolerance[domain[pairs[:, 0]]], _SHARE * shorter)
         near.append(domain[pairs[gaps(start, end, pairs)[0] <= most, 0]])
     return set(np.concatenate(near).tolist())
 

@@ -129,8 +129,8 @@ def mesh_regions(
     """Mesh several regions as one: where they share edges, or parts of them, they have the same vertices.
 
     regions: domains as of `mesh`, that do not overlap. A vertex of one that is nearer to an edge of another than 1e-6
-    of the size of all, and than a tenth of the edges there, lies on it. The mesh's region is the number of the region
-    that each triangle is part of. All else is as of `mesh`. Raises ContourError, "overlap" for regions that overlap.
+    of the size of all lies on it. The mesh's region is the number of the region that each triangle is part of. All else
+    is as of `mesh`. Raises ContourError, "overlap" for regions that overlap.
     """
     settings = Settings(sizing, min_edge_length, gradation, boundary, corner_angle, passes, flips, smooth)
     regions = [list(region) for region in regions]

@@ -1,8 +1,7 @@
 """Curves on common vertices: ends that lie on another curve become vertices of it, and places that are one, one vertex.
 
 Vertices of different curves are one vertex if they are closer than a tolerance, and so is a vertex on another curve's
-edge, which it then divides. Curves finer than the tolerance have their own: a share of the shorter edge there. Within
-one curve only what is exactly so counts. What meets elsewhere crosses.
+edge, which it then divides. Within one curve only what is exactly so counts. What meets elsewhere crosses.
 """
 
 from __future__ import annotations
@@ -18,9 +17,6 @@ from .predicates import orientation
 
 # Of the size of the domain: ten times the rounding of coordinates that were stored in 32 bits.
 TOLERANCE = 1e-6
-
-# Of the shorter of two edges: what joins vertices that are further apart changes an outline's shape.
-_SHARE = 0.1
 
 
 @dataclass(frozen=True)
@@ -73,36 +69,25 @@ def node_curves(curves: Sequence[np.ndarray], closed: Sequence[bool], tolerance:
     return _crossing(noded, curve) or noded
 
 
-def tolerances(start: np.ndarray, end: np.ndarray, pairs: np.ndarray, tolerance: np.ndarray | float) -> np.ndarray:
-    """(k,) how far apart what counts as one may be at pairs (k, 2) of edges (e, 2); a point alone is one of no length.
-
-    tolerance: that of the domain, or of each pair's (k,).
-    """
-    length = np.hypot(*(end - start)[pairs].T)
-    length[length == 0] = np.inf
-    return np.minimum(tolerance, _SHARE * length.min(axis=0))
-
-
 def _incidences(points, start, end, curve, tolerance):
     """Pairs (k, 2) of vertices that are one, and vertices on edges: the edge, the share of it before, the vertex."""
     merged = [np.zeros((0, 2), dtype=np.int64)]
     edge, share, vertex = [np.zeros(0, dtype=np.int64)], [np.zeros(0)], [np.zeros(0, dtype=np.int64)]
     for pairs in close_pairs(points[start], points[end], np.zeros(len(start), dtype=np.int64), tolerance):
         one = np.concatenate([pairs[:, 0], pairs[:, 0], pairs[:, 1], pairs[:, 1]])
-        most = np.tile(tolerances(points[start], points[end], pairs, tolerance), 4)
         v = np.concatenate([start[pairs[:, 1]], end[pairs[:, 1]], start[pairs[:, 0]], end[pairs[:, 0]]])
         apart = (v != start[one]) & (v != end[one])
-        one, v, most = one[apart], v[apart], most[apart]
+        one, v = one[apart], v[apart]
         here, a, b = points[v], points[start[one]], points[end[one]]
         along, offset = b - a, here - a
         square = np.maximum(np.sum(along**2, axis=1), np.finfo(float).tiny)
         t = np.clip(np.sum(offset * along, axis=1) / square, 0.0, 1.0)
-        near = np.hypot(*(offset - t[:, None] * along).T) <= most
+        near = np.hypot(*(offset - t[:, None] * along).T) <= tolerance
         within = np.all((here >= np.minimum(a, b)) & (here <= np.maximum(a, b)), axis=1)
         exactly = within & (orientation(a, b, here) == 0)
         on = np.where(curve[v] == curve[start[one]], exactly, near | exactly)
         for place, at in ((a, start), (b, end)):
-            same = on & (curve[v] != curve[start[one]]) & (np.hypot(*(here - place).T) <= most)
+            same = on & (curve[v] != curve[start[one]]) & (np.hypot(*(here - place).T) <= tolerance)
             same |= on & np.all(here == place, axis=1)
             merged.append(np.column_stack([v, at[one]])[same])
             on &= ~same
