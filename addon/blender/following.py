@@ -15,7 +15,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from .kinds import shows_collection
-from .linked import fingerprint, is_linked, linked_settings, source_is_there
+from .linked import fingerprint, is_draft, is_linked, linked_settings, made_of, source_is_there
 
 # Meshes that take longer than this many seconds are drafted while their source changes. Where drafts take longer than
 # that, they wait, too, until it has not changed for as long as _REST.
@@ -25,9 +25,12 @@ _TOO_LONG = 3.0
 # Steps of smoothing that a draft has instead of the networks' passes.
 _SMOOTH = 2
 
-_wanted: set[str] = set()  # names of meshes that may be out of date
-_seconds = float("inf")  # that the last meshes took, and the last drafts
-_draft_seconds = 0.0
+# Names of meshes: that may be out of date, and whose source is to rest first.
+_wanted: set[str] = set()
+_resting: set[str] = set()
+# Seconds that each mesh took the last time in full, and the last draft since then.
+_seconds: dict[str, float] = {}
+_draft_seconds: dict[str, float] = {}
 _at_work = False
 
 
@@ -36,15 +39,15 @@ def want(obj: bpy.types.Object) -> None:
     if not is_linked(obj) or not obj.tessera.automatic or _at_work:
         return
     _wanted.add(obj.name)
-    if bpy.app.background:
-        _finish()
-        return
-    slow = _seconds > _QUICK
-    if slow:
-        _forget(_finish)
-        if _draft_seconds <= _QUICK_DRAFT:
-            _soon(_draft)
-    _soon(_finish, _REST if slow else 0.0)
+    if has_window():
+        _soon(_catch_up)
+    else:
+        _catch_up()
+
+
+def has_window() -> bool:
+    """Whether there is someone to wait for: else timers do not run, and nothing is drafted."""
+    return not bpy.app.background
 
 
 def _soon(work: Callable[[], None], seconds: float = 0.0) -> None:
@@ -57,39 +60,62 @@ def _forget(work: Callable[[], None]) -> None:
         bpy.app.timers.unregister(work)
 
 
-def _draft() -> None:
-    """Draft what may be out of date, and leave it out of date."""
-    global _draft_seconds
-    _draft_seconds = sum(_mesh_wanted(draft=True).values()) or _draft_seconds
+def _catch_up() -> None:
+    """Mesh what is quick, and draft the rest."""
+    try:
+        for obj in _each(_wanted):
+            if not obj.tessera.automatic:
+                continue
+            if not has_window() or _seconds.get(obj.name, _TOO_LONG) <= _QUICK:
+                _mesh(obj)
+                continue
+            changed = _draft_seconds.get(obj.name, 0.0) > _QUICK_DRAFT or _mesh(obj, draft=True)
+            if changed:
+                _resting.add(obj.name)
+                _forget(_finish)
+            if changed or is_draft(obj):
+                _soon(_finish, _REST)
+    finally:
+        if _wanted:  # one could not be meshed: the others next
+            _soon(_catch_up)
 
 
 def _finish() -> None:
-    """Mesh what may be out of date."""
-    global _seconds, _draft_seconds
-    seconds = _mesh_wanted()
-    _wanted.clear()
-    _seconds = sum(seconds.values()) or _seconds
-    _draft_seconds = 0.0  # the next changes are drafted again, however long the last draft took
-    if not bpy.app.background:
-        for name, its in seconds.items():
-            stop_if_slow(bpy.data.objects[name], its)
-
-
-def _mesh_wanted(draft: bool = False) -> dict[str, float]:
-    """Mesh what is wanted, and how long each took that was out of date."""
-    global _at_work
-    seconds = {}
-    _at_work = True
+    """Mesh what has been waiting for its source to rest, and all drafts."""
+    _resting.update(obj.name for obj in bpy.data.objects if is_draft(obj))
     try:
-        for name in sorted(_wanted):
-            obj = bpy.data.objects.get(name)
-            if is_linked(obj) and obj.tessera.automatic:
-                since = time.perf_counter()
-                if mesh_again(obj, draft):
-                    seconds[name] = time.perf_counter() - since
+        for obj in _each(_resting):
+            if obj.tessera.automatic or is_draft(obj):
+                _mesh(obj)
+                # However long it took: the first one has loaded the networks.
+                _draft_seconds.pop(obj.name, None)
+                stop_if_slow(obj, _seconds.get(obj.name, 0.0))
+    finally:
+        if _resting:
+            _soon(_finish)
+
+
+def _each(names: set[str]) -> Iterator[bpy.types.Object]:
+    """The linked meshes of these names, taken out one by one."""
+    while names:
+        name = min(names)
+        names.remove(name)
+        obj = bpy.data.objects.get(name)
+        if is_linked(obj):
+            yield obj
+
+
+def _mesh(obj: bpy.types.Object, draft: bool = False) -> bool:
+    """`mesh_again`, timed, without an answer to the changes that it makes itself."""
+    global _at_work
+    _at_work, since = True, time.perf_counter()
+    try:
+        was_due = mesh_again(obj, draft)
     finally:
         _at_work = False
-    return seconds
+    if was_due:
+        (_draft_seconds if draft else _seconds)[obj.name] = time.perf_counter() - since
+    return was_due
 
 
 def stop_if_slow(obj: bpy.types.Object, seconds: float) -> None:
@@ -102,7 +128,7 @@ def stop_if_slow(obj: bpy.types.Object, seconds: float) -> None:
 def mesh_again(obj: bpy.types.Object, draft: bool = False) -> bool:
     """Mesh a linked object if it is out of date; whether it was. What is wrong with its source is noted at it.
 
-    draft: in a third of the time, poorer, and it stays out of date.
+    draft: faster and poorer; it stays out of date.
     """
     from . import meshing, results  # here, so that enabling the add-on does not load the mesher
 
@@ -112,13 +138,13 @@ def mesh_again(obj: bpy.types.Object, draft: bool = False) -> bool:
     settings, depsgraph = linked_settings(obj), bpy.context.evaluated_depsgraph_get()
     try:
         task = meshing.read_task(obj.tessera.source, depsgraph, settings)
-        if fingerprint(task, settings) == obj.tessera.fingerprint:
+        if made_of(obj) == fingerprint(task, settings) and (draft or not is_draft(obj)):
             if obj.tessera.message:
                 obj.tessera.message = ""
             return False
         if draft:
             task = replace(task, settings=replace(settings, passes=0, smooth=max(settings.smooth, _SMOOTH)))
-        results.rewrite(obj, meshing.finish(meshing.mesh_task(task)), not draft)
+        results.rewrite(obj, meshing.finish(meshing.mesh_task(task)), draft)
     except meshing.Failure as failure:
         obj.tessera.message = str(failure)
         return False
@@ -127,21 +153,25 @@ def mesh_again(obj: bpy.types.Object, draft: bool = False) -> bool:
 
 @persistent
 def _after_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    changed = {update.id.original.name for update in depsgraph.updates if _matters(update)}
+    changed = {_key(update.id.original) for update in depsgraph.updates if _matters(update)}
     if changed:
         for obj in _following():
             near = obj.tessera.settings.object_name
-            if changed & {*_names(obj.tessera.source), near.name if near else ""}:
+            if changed & {*_parts(obj.tessera.source), *([_key(near)] if near else [])}:
                 want(obj)
 
 
-def _names(source: bpy.types.Object) -> Iterator[str]:
-    """What the source is made of: itself, its data, and the objects of the collection that it shows, by name."""
+def _key(block: bpy.types.ID) -> tuple[str, str]:
+    return block.id_type, block.name
+
+
+def _parts(source: bpy.types.Object) -> Iterator[tuple[str, str]]:
+    """What the source is made of: itself, its data, and the objects of the collection that it shows, by `_key`."""
     shown = source.instance_collection.all_objects if shows_collection(source) else ()
     for obj in (source, *shown):
-        yield obj.name
+        yield _key(obj)
         if obj.data is not None:
-            yield obj.data.name
+            yield _key(obj.data)
 
 
 def _matters(update: bpy.types.DepsgraphUpdate) -> bool:
@@ -155,8 +185,15 @@ def _after_undo(scene: bpy.types.Scene, _) -> None:
 
 
 @persistent
+def _before_save(_path: str, _) -> None:
+    """No file has drafts."""
+    _finish()
+
+
+@persistent
 def _after_load(_path: str, _) -> None:
-    _wanted.clear()
+    for names in (_wanted, _resting, _seconds, _draft_seconds):
+        names.clear()
 
 
 def _following() -> Iterator[bpy.types.Object]:
@@ -170,6 +207,7 @@ def _handlers() -> tuple:
         (handlers.depsgraph_update_post, _after_update),
         (handlers.undo_post, _after_undo),
         (handlers.redo_post, _after_undo),
+        (handlers.save_pre, _before_save),
         (handlers.load_post, _after_load),
     )
 
@@ -184,5 +222,5 @@ def unregister() -> None:
     """Listen no more."""
     for handlers, function in _handlers():
         handlers.remove(function)
-    for work in (_draft, _finish):
+    for work in (_catch_up, _finish):
         _forget(work)

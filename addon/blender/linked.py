@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 # Where the bars of the histogram of qualities begin and end.
 BINS = (0.0, 0.5, 0.7, 0.8, 0.9, 1.0)
+_DRAFT = "draft "  # before the fingerprint of what a draft was made of
 
 
 def _changed(group, _context) -> None:
@@ -62,9 +63,19 @@ def link(obj: bpy.types.Object, meshed: Meshed) -> None:
     mark_as_current(obj, meshed)
 
 
-def mark_as_current(obj: bpy.types.Object, meshed: Meshed) -> None:
-    """Note that a linked mesh is what is made of this now."""
-    obj.tessera.fingerprint = fingerprint(meshed.task, linked_settings(obj))
+def mark_as_current(obj: bpy.types.Object, meshed: Meshed, draft: bool = False) -> None:
+    """Note that a linked mesh is what is made of this now, or a draft of it."""
+    obj.tessera.fingerprint = _DRAFT * draft + fingerprint(meshed.task, linked_settings(obj))
+
+
+def made_of(obj: bpy.types.Object) -> str:
+    """The `fingerprint` of what a linked mesh, or a draft of it, was made of last."""
+    return obj.tessera.fingerprint.removeprefix(_DRAFT)
+
+
+def is_draft(obj: bpy.types.Object) -> bool:
+    """Whether an object is a draft of a linked mesh, to be meshed as its settings say."""
+    return obj.tessera.fingerprint.startswith(_DRAFT) and is_linked(obj)
 
 
 def remember_quality(obj: bpy.types.Object, made: list[Meshed]) -> None:

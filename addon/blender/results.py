@@ -35,14 +35,11 @@ def write_results(made: list[Meshed]) -> list[bpy.types.Object]:
     return objects
 
 
-def rewrite(target: bpy.types.Object, meshed: Meshed, current: bool = True) -> None:
-    """Give a linked mesh its new geometry; current: whether it is as its settings say, or else out of date."""
+def rewrite(target: bpy.types.Object, meshed: Meshed, draft: bool = False) -> None:
+    """Give a linked mesh its new geometry; draft: whether that is poorer than its settings say."""
     write_again(target, list(meshed.pieces))
     remember_quality(target, [meshed])
-    if current:
-        mark_as_current(target, meshed)
-    else:
-        target.tessera.fingerprint = ""
+    mark_as_current(target, meshed, draft)
 
 
 def select(

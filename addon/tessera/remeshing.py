@@ -24,8 +24,8 @@ TURNS = 4
 POOR = 0.93  # elements of less quality are worth a try
 _MORE = 0, -1, 1  # inner vertices than NN1 asks for
 # What a patch is worth: its worst quality, and so many times its mean; a new one has to be better by the gain. Of those
-# that are worth as much as `_GOOD` already, one in ten would get better, and by little. Nor is it worth a turn's time
-# where there are no more of them in a domain than `_FEW` of its elements.
+# that are worth as much as `_GOOD` already, one in ten would get better, and by little: they are not tried. Those below
+# `_BAD` are; those between only where a domain has more to try than `_FEW` of its elements, or a turn is not worth it.
 _MEAN, _GAIN, _GOOD, _BAD, _FEW = 3, 6e-3, 3.8, 3.6, 1e-3
 _RELAXED = 0.3  # share of the work that is done after the first relaxation
 

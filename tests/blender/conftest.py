@@ -7,6 +7,7 @@ import bpy
 import pytest
 
 import addon.blender
+from tests.blender.drawing import SQUARE, poly_curve
 
 
 @pytest.fixture(autouse=True)
@@ -15,6 +16,14 @@ def empty_file():
     addon.blender.register()
     yield
     addon.blender.unregister()
+
+
+@pytest.fixture
+def square():
+    """A square, and the linked mesh of it, which is active."""
+    curve = poly_curve(SQUARE, name="Square")
+    assert bpy.ops.tessera.mesh_curve(edge_length=0.2, keep_linked=True, flips=True) == {"FINISHED"}
+    return curve, bpy.context.object
 
 
 _status = pytest.ExitCode.OK

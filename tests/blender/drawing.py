@@ -101,3 +101,14 @@ def distance_to(polygon, points):
     along = np.einsum("pkd,kd->pk", points[:, None] - a, b - a) / np.sum((b - a) ** 2, axis=1)
     nearest = a + np.clip(along, 0, 1)[..., None] * (b - a)
     return np.linalg.norm(points[:, None] - nearest, axis=2).min(axis=1)
+
+
+def move(curve, number, x):
+    """One point of the curve, and what Blender does after it."""
+    curve.data.splines[0].points[number].co.x = x
+    curve.data.update_tag()
+    bpy.context.view_layer.update()
+
+
+def right(mesh):
+    return vertices(mesh)[:, 0].max()

@@ -6,27 +6,8 @@ import pytest
 
 from addon.blender import following
 from addon.blender.properties import read_settings
-from tests.blender.drawing import SQUARE, circle, poly_curve, select, vertices
+from tests.blender.drawing import SQUARE, circle, move, poly_curve, right, select, vertices
 from tests.blender.sources import collection_of, instance_of
-
-
-@pytest.fixture
-def square():
-    """A square, and the linked mesh of it, which is active."""
-    curve = poly_curve(SQUARE, name="Square")
-    assert bpy.ops.tessera.mesh_curve(edge_length=0.2, keep_linked=True, flips=True) == {"FINISHED"}
-    return curve, bpy.context.object
-
-
-def move(curve, number, x):
-    """One point of the curve, and what Blender does after it."""
-    curve.data.splines[0].points[number].co.x = x
-    curve.data.update_tag()
-    bpy.context.view_layer.update()
-
-
-def right(mesh):
-    return vertices(mesh)[:, 0].max()
 
 
 def test_only_what_was_made_with_keep_linked_is_linked(square):

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..linked import is_linked, linked_settings, source_is_there
+from .. import following
+from ..linked import is_draft, is_linked, linked_settings, source_is_there
 from ..progress import Steps
 from .stepping import Refusal, Stepping
 
@@ -65,6 +66,8 @@ class TESSERA_OT_unlink(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Forget it."""
         for obj in _targets(context):
+            if is_draft(obj):
+                following.mesh_again(obj)
             obj.tessera.source = None
             obj.tessera.automatic = False
             obj.tessera.message = obj.tessera.fingerprint = ""

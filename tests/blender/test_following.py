@@ -1,0 +1,159 @@
+"""Linked meshes that follow in a window: drafted at each change, meshed in full when their source rests.
+
+Timers do not run without a window, so these stand for them: what is due first is done first.
+"""
+
+import bpy
+import pytest
+
+from addon.blender import following
+from addon.blender.linked import is_draft
+from tests.blender.drawing import circle, move, poly_curve, right, select
+
+
+class Timers:
+    """What following asks of `bpy.app.timers`, with a clock of its own."""
+
+    def __init__(self):
+        self.due, self.now, self.done = {}, 0.0, []
+
+    def soon(self, work, seconds=0.0):
+        self.due.setdefault(work, self.now + seconds)
+
+    def forget(self, work):
+        self.due.pop(work, None)
+
+    def run(self, seconds=60.0):
+        """What is due within these seconds; gives the names of what was done, in turn."""
+        end, self.done = self.now + seconds, []
+        while self.due and min(self.due.values()) <= end:
+            work = min(self.due, key=self.due.get)
+            self.now = max(self.now, self.due.pop(work)) + 0.01
+            self.done.append(work.__name__)
+            work()
+            bpy.context.view_layer.update()
+            assert len(self.done) < 20, "it never ends"
+        self.now = end
+        return self.done
+
+
+@pytest.fixture
+def timers(monkeypatch):
+    found = Timers()
+    following._after_load("", None)
+    monkeypatch.setattr(following, "has_window", lambda: True)
+    monkeypatch.setattr(following, "_soon", found.soon)
+    monkeypatch.setattr(following, "_forget", found.forget)
+    monkeypatch.setattr(following, "_QUICK", 0.0)  # every mesh takes long
+    monkeypatch.setattr(following, "_QUICK_DRAFT", 60.0)
+    return found
+
+
+def follow(mesh):
+    mesh.tessera.automatic = True
+    return mesh
+
+
+def test_a_change_is_drafted_and_finished_when_the_curve_rests(square, timers):
+    curve, mesh = square
+    follow(mesh)
+    timers.run()
+    for x in (2.0, 2.5, 3.0):
+        move(curve, 1, x)
+        assert timers.run(0.4) == ["_catch_up"]
+        assert right(mesh) == x and is_draft(mesh)
+    drafted = mesh.tessera.q_mean
+    assert timers.run() == ["_finish"]
+    assert not is_draft(mesh) and mesh.tessera.q_mean > drafted and right(mesh) == 3.0
+    assert timers.run() == []
+
+
+def test_quick_meshes_are_meshed_at_once(square, timers, monkeypatch):
+    curve, mesh = square
+    follow(mesh)
+    timers.run()
+    monkeypatch.setattr(following, "_QUICK", 60.0)
+    move(curve, 1, 2.0)
+    timers.run()  # the first time it may take long, as far as is known
+    move(curve, 1, 3.0)
+    assert timers.run() == ["_catch_up"] and right(mesh) == 3.0 and not is_draft(mesh)
+
+
+def test_slow_drafts_wait_until_the_curve_rests(square, timers, monkeypatch):
+    curve, mesh = square
+    follow(mesh)
+    timers.run()
+    monkeypatch.setattr(following, "_QUICK_DRAFT", 0.0)
+    move(curve, 1, 2.0)
+    timers.run(0.2)
+    move(curve, 1, 3.0)
+    assert timers.run(0.2) == ["_catch_up"] and right(mesh) == 2.0
+    timers.run()
+    assert right(mesh) == 3.0 and not is_draft(mesh)
+
+
+@pytest.mark.parametrize("how", ["near", "name"])
+def test_a_mesh_whose_own_changes_come_back_is_finished(square, timers, how):
+    """Another mesh follows this one, or its data has the name of the curve."""
+    curve, mesh = square
+    follow(mesh)
+    if how == "name":
+        mesh.data.name = curve.data.name
+    else:
+        select(circle())
+        bpy.ops.tessera.mesh_curve(edge_length=0.4, keep_linked=True)
+        other = bpy.context.object
+        other.tessera.settings.object_name = mesh
+        other.tessera.settings.use_object = True
+        follow(other)
+    timers.run()
+    move(curve, 1, 2.0)
+    timers.run()
+    assert right(mesh) == 2.0 and not any(is_draft(obj) for obj in bpy.data.objects)
+
+
+@pytest.mark.parametrize("how", ["switched off", "renamed", "unlinked", "saved"])
+def test_no_draft_stays(square, timers, how, tmp_path):
+    curve, mesh = square
+    follow(mesh)
+    timers.run()
+    move(curve, 1, 2.0)
+    timers.run(0.1)
+    assert is_draft(mesh)
+    drafted = mesh.tessera.q_mean
+    if how == "switched off":
+        mesh.tessera.automatic = False
+    elif how == "renamed":
+        mesh.name = "Another"
+    elif how == "unlinked":
+        select(mesh)
+        bpy.ops.tessera.unlink()
+    else:
+        bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "drafted.blend"))
+        assert not is_draft(mesh)
+    timers.run()
+    assert not is_draft(mesh) and mesh.tessera.q_mean > drafted
+
+
+def test_one_that_goes_wrong_does_not_keep_the_others(square, timers, monkeypatch):
+    _, mesh = square
+    mesh.name = "First"
+    select(poly_curve([(0, 0), (1, 0), (0, 1)], name="Triangle"))
+    bpy.ops.tessera.mesh_curve(edge_length=0.3, keep_linked=True)
+    other = follow(bpy.context.object)
+    follow(mesh)
+    timers.run()
+    real = following.mesh_again
+
+    def wrong(obj, draft=False):
+        if obj == mesh:
+            raise MemoryError
+        return real(obj, draft)
+
+    monkeypatch.setattr(following, "mesh_again", wrong)
+    following._wanted.add("First")
+    move(bpy.data.objects["Triangle"], 1, 2.0)
+    with pytest.raises(MemoryError):
+        timers.run()
+    timers.run()
+    assert right(other) == 2.0 and not is_draft(other)
