@@ -42,12 +42,12 @@ def mesh_by_levels(
 ) -> Steps[RegionMeshes]:
     """Mesh what outlines bound, with vertices as wanted.
 
-    corner_angle: in radians; passes: of relaxation, 0 for no improvement; most: (d,) levels that each domain may have,
-    at first as many as it can. Where a level's boundary does not fit the coarser mesh, the domain starts again with a
-    level less. Domains with a graph have no levels.
+    corner_angle: in radians; passes: of relaxation, 0 for no improvement, without which levels are of no use; most:
+    (d,) levels that each domain may have, at first as many as it can. Where a level's boundary does not fit the coarser
+    mesh, the domain starts again with a level less. Domains with a graph have no levels.
     """
     if most is None:
-        most = np.full(len(target.most), MOST_LEVELS)
+        most = np.full(len(target.most), MOST_LEVELS if passes else 0)
     with watch("coarsening"):
         coarsening = coarsen(outlines.loops, outlines.is_hole, outlines.domain, target, corner_angle, most)
     parts, done, domains = [], 0.0, outlines.domains
