@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +23,7 @@ _SENTENCES = {
     "self-intersection": "crosses or touches itself near {place}: move points there to keep its edges apart.",
     "crossing": "crosses or touches another near {place}: move them apart, or join them into one.",
 }
+_PLACE = re.compile(r"\((-?[\d.]+(?:e[+-]?\d+)?), (-?[\d.]+(?:e[+-]?\d+)?)\)")
 
 
 class Failure(Exception):
@@ -34,11 +36,27 @@ class Failure(Exception):
         self.obj, self.reason, self.spline, self.place = obj.name, error.reason, 0, None
         if outline is not None and error.place is not None:
             self.spline = int(outline.splines[outline.loop_near(error.place)])
-            lifted = outline.plane.lift(np.array([error.place], dtype=np.float64))[0]
-            self.place = tuple(obj.matrix_world @ Vector(lifted))
+            self.place = _in_world(obj, outline, error.place)
         elif isinstance(error, OutlineError) and error.point is not None:
             self.spline, self.place = error.spline, tuple(obj.matrix_world @ Vector(error.point))
         super().__init__(_sentence(obj, error, self.spline, self.place))
+
+
+def with_world_places(sentence: str, obj: bpy.types.Object, outline: Outline) -> str:
+    """What the library says of an outline, with its places in the world."""
+
+    def lifted(found: re.Match) -> str:
+        return _where(_in_world(obj, outline, tuple(map(float, found.groups()))))
+
+    return _PLACE.sub(lifted, sentence)
+
+
+def _in_world(obj: bpy.types.Object, outline: Outline, place: tuple[float, float]) -> tuple[float, float, float]:
+    return tuple(obj.matrix_world @ Vector(outline.plane.lift(np.array([place], dtype=np.float64))[0]))
+
+
+def _where(place: tuple[float, float, float]) -> str:
+    return f"({', '.join(f'{x:.4g}' for x in place)})"
 
 
 def _sentence(obj: bpy.types.Object, error: ContourError, spline: int, place: tuple | None) -> str:
@@ -47,7 +65,7 @@ def _sentence(obj: bpy.types.Object, error: ContourError, spline: int, place: tu
     name = f"{_KINDS.get(obj.type, 'Curve')} '{obj.name}'"
     if spline:
         name += f", spline {spline}"
-    where = f"({', '.join(f'{x:.4g}' for x in place)})" if place else ""
+    where = _where(place) if place else ""
     if place and error.reason in _SENTENCES:
         return f"{name} {_SENTENCES[error.reason].format(place=where)}"
     return f"{name}: {error}" + (f" That is at {where}." if place else "")

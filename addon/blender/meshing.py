@@ -15,7 +15,7 @@ from ..tessera import networks
 from ..tessera.counting import expected_edge_length, mesh_to_count
 from ..tessera.steps import Steps, finish, within
 from .errors import OutlineError
-from .failures import Failure
+from .failures import Failure, with_world_places
 from .outline import Outline
 from .preferences import execution
 from .progress import named
@@ -39,12 +39,16 @@ class Task:
 
 @dataclass(frozen=True)
 class Meshed:
-    """edge_length: the target that the settings came to; pieces: what is written; reports: of each piece."""
+    """edge_length: the target that the settings came to; pieces: what is written; reports: of each piece.
+
+    warnings: of the settings, and of all pieces, each once, with places in the world.
+    """
 
     task: Task
     edge_length: float
     pieces: tuple[Piece, ...]
     reports: tuple[tessera.Report, ...]
+    warnings: tuple[str, ...]
 
     @property
     def n_triangles(self) -> int:
@@ -60,12 +64,6 @@ class Meshed:
     def q_mean(self) -> float:
         """Of the triangles of all pieces."""
         return sum(report.q_mean * report.n_triangles for report in self.reports) / self.n_triangles
-
-    @property
-    def warnings(self) -> list[str]:
-        """Of the settings, and of all pieces, each once."""
-        of_pieces = dict.fromkeys(warning for report in self.reports for warning in report.warnings)
-        return unnamed(self.task.settings) + list(of_pieces)
 
 
 def read_task(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, settings: Settings) -> Task:
@@ -92,7 +90,7 @@ def mesh_task(task: Task) -> Steps[Meshed]:
     networks.use(networks.Execution(*execution()))
     edge_length = automatic_edge_length(task.outlines, task.settings)
     counts = _shared_count(task)
-    pieces, reports = [], []
+    pieces, reports, warnings = [], [], unnamed(task.settings)
     for number, (outline, targets) in enumerate(zip(task.outlines, task.targets, strict=True)):
         first, last = number / len(task.outlines), (number + 1) / len(task.outlines)
         outline = _with_vertices(outline, task.settings, edge_length, counts[number])
@@ -104,7 +102,8 @@ def mesh_task(task: Task) -> Steps[Meshed]:
             raise Failure(task.obj, error, outline) from error
         pieces.append(Piece(outline, made.vertices, made.triangles, made.region))
         reports.append(made.report)
-    return Meshed(task, edge_length, tuple(pieces), tuple(reports))
+        warnings += [with_world_places(warning, task.obj, outline) for warning in made.report.warnings]
+    return Meshed(task, edge_length, tuple(pieces), tuple(reports), tuple(dict.fromkeys(warnings)))
 
 
 def mesh_object(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, settings: Settings) -> Steps[Meshed]:

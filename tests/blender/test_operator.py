@@ -225,6 +225,14 @@ def test_warnings_name_the_object_also_where_it_is_replaced(capfd):
     assert "Coarse: 4 of the 4 kept boundary edges are longer" in capfd.readouterr().out
 
 
+def test_a_warnings_place_is_in_the_world(capfd):
+    curve = poly_curve(SQUARE, [(x + 1, y + 1) for x, y in SQUARE], name="Corners")
+    curve.location, curve.scale = (10, 20, 30), (2, 2, 2)
+    bpy.context.view_layer.update()
+    assert bpy.ops.tessera.mesh_curve(edge_length=0.5) == {"FINISHED"}
+    assert "Corners: contours touch at (12, 22, 30): " in capfd.readouterr().out
+
+
 @pytest.mark.parametrize("kind", ["CURVE", "FONT", "CURVES", "GREASEPENCIL"])
 def test_what_is_being_edited_is_meshed_as_it_is_there(kind):
     loop = np.column_stack([SQUARE, np.zeros(4)])

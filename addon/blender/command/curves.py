@@ -84,7 +84,7 @@ def _restored(curve: Curve) -> meshing.Meshed:
     thirds = zip(outlines, arrays[0::3], arrays[1::3], arrays[2::3], strict=True)
     pieces = tuple(Piece(outline, v, t, region if len(region) else None) for outline, v, t, region in thirds)
     reports = tuple(tessera.Report(**report) for report in curve.record.outlines)
-    return meshing.Meshed(curve.task, curve.record.edge_length, pieces, reports)
+    return meshing.Meshed(curve.task, curve.record.edge_length, pieces, reports, curve.record.warnings)
 
 
 def _mesh(job: Job, task: meshing.Task, start: float) -> tuple[Record, list[np.ndarray]]:
