@@ -23,7 +23,7 @@ _QUICK, _QUICK_DRAFT, _REST = 0.1, 0.3, 0.5
 # A window that stands still for more seconds than this is no help: such meshes follow no longer by themselves.
 _TOO_LONG = 3.0
 # Steps of smoothing that a draft has instead of the networks' passes.
-_SMOOTH = 2
+_SMOOTH = 1
 
 # Names of meshes: that may be out of date, and whose source is to rest first.
 _wanted: set[str] = set()
