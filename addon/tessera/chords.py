@@ -99,8 +99,9 @@ def _best_of_many(batch: _Batch, shortlist: int) -> tuple[np.ndarray, np.ndarray
     for rows in np.array_split(np.arange(len(batch.size)), 1 + len(batch.size) * n_pairs // _BLOCK):
         block = _rows(batch, rows)
         start, end = _pairs(block)
-        start, end, _ = _keep_best(max(4 * shortlist, start.shape[1] // 5), start, end, _cut_cost(block, start, end))
-        start, end, cost = _keep_best(shortlist, start, end, _first_cost(block, start, end))
+        most = max(4 * shortlist, start.shape[1] // 5)
+        start, end, cost = _keep_best(most, start, end, _cut_cost(block, start, end))
+        start, end, cost = _keep_best(shortlist, start, end, _first_cost(block, start, end, cost))
         cost = cost + _close_cost(block, start, end, cost)
         best = np.argmin(cost, axis=1)[:, None]
         possible = np.isfinite(np.take_along_axis(cost, best, axis=1))
@@ -152,8 +153,8 @@ def _cut_cost(batch: _Batch, start: np.ndarray, end: np.ndarray) -> np.ndarray:
     return np.where(possible, cost - reflex[row, start] - reflex[row, end], np.inf)
 
 
-def _first_cost(batch: _Batch, start: np.ndarray, end: np.ndarray) -> np.ndarray:
-    """Cost (P, C) of chords by all but the vertices near them; infinite where they leave the polygon at an end."""
+def _first_cost(batch: _Batch, start: np.ndarray, end: np.ndarray, cut_cost: np.ndarray) -> np.ndarray:
+    """Cost (P, C) of cuts as chords, but for vertices near them; infinite where they leave the polygon at an end."""
     row = np.arange(len(start))[:, None]
     along = batch.points[row, end] - batch.points[row, start]
     length = np.hypot(along[..., 0], along[..., 1])
@@ -162,7 +163,7 @@ def _first_cost(batch: _Batch, start: np.ndarray, end: np.ndarray) -> np.ndarray
     most = np.maximum(np.minimum(n_edges, batch.size[:, None] - n_edges) - 1, 1)
     with np.errstate(divide="ignore"):
         stretch = np.log(natural / np.clip(np.rint(natural), 1, most))
-        cost = _cut_cost(batch, start, end) + 2.0 * stretch**2
+        cost = cut_cost + 2.0 * stretch**2
     direction = np.arctan2(along[..., 1], along[..., 0])
     for slot, heading in ((start, direction), (end, direction + np.pi)):
         first = (heading - batch.onward[row, slot]) % (2 * np.pi)
@@ -221,8 +222,8 @@ def _clearance_cost(batch: _Batch, row: np.ndarray, start: np.ndarray, end: np.n
     safe_from_vertices = np.min(np.where(other, distance, np.inf), axis=1) > safe[:, 0]
 
     following = np.where(slot + 1 < size, slot + 1, 0)
-    aside_next, forward_next = (np.take_along_axis(v, following, axis=1) for v in (aside, forward))
-    apart = other & np.take_along_axis(other, following, axis=1)
+    aside_next, forward_next, other_next = (v[k[:, None], following] for v in (aside, forward, other))
+    apart = other & other_next
     opposite = (aside > 0) != (aside_next > 0)
     flat = (np.abs(aside) <= safe) & (np.abs(aside_next) <= safe)
     with np.errstate(divide="ignore", invalid="ignore"):

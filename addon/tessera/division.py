@@ -86,8 +86,8 @@ def _batches(size: np.ndarray, chosen: np.ndarray) -> list[np.ndarray]:
 
 
 def _padded_width(size: np.ndarray) -> np.ndarray:
-    """The next of 20, 24, 28, 32, 40, 48, 56, 64, 80, ...: at most a quarter more."""
-    unit = 2 ** (np.frexp(size - 1)[1].astype(np.int64) - 3)
+    """The next of 24, 32, 40, 48, 56, 64, 80, 96, ...: at most a quarter more from 32 on."""
+    unit = np.maximum(2 ** (np.frexp(size - 1)[1].astype(np.int64) - 3), 8)
     return -(-size // unit) * unit
 
 

@@ -36,35 +36,22 @@ def grade_from_edges(
     """
     lengths = np.linalg.norm(ends - starts, axis=1)
     long = np.flatnonzero(lengths > LONG * target(0.5 * (starts + ends), of))
-    long = long[np.argsort(of[long], kind="stable")]
-    starts, edges, lengths = starts[long], (ends - starts)[long], lengths[long]
-    owners, first, count = np.unique(of[long], return_index=True, return_counts=True)
+    if not len(long):
+        return target
+    # The largest of length - slope · distance is what is left of the longest by the lowest of cones.
+    longest = np.zeros(of.max() + 1)
+    np.maximum.at(longest, of[long], lengths[long])
+    slope = np.full(len(long), GRADATION)
+    cones = build_cones(Places(starts[long], ends[long], longest[of[long]] - lengths[long], slope, of[long]))
 
     def sizing(points: np.ndarray, owner: np.ndarray) -> np.ndarray:
         """(k, 2) points of meshes (k,) -> (k,) wanted edge lengths."""
         wanted = target(points, owner)
-        order = np.argsort(owner, kind="stable")
-        begin, end = (np.searchsorted(owner[order], owners, side=side) for side in ("left", "right"))
-        for i, j, b, n in zip(begin, end, first, count, strict=True):
-            here, long = order[i:j], slice(b, b + n)
-            wanted[here] = _beside(points[here], starts[long], edges[long], lengths[long], wanted[here])
-        return wanted
+        left = longest[owner] - wanted
+        least = lowest(cones, points, owner, left)
+        return np.where(least < left, longest[owner] - least, wanted)
 
     return sizing
-
-
-def _beside(
-    points: np.ndarray, starts: np.ndarray, edges: np.ndarray, lengths: np.ndarray, wanted: np.ndarray
-) -> np.ndarray:
-    """The `wanted` lengths (k,) at points (k, 2), or what edges (e, 2) from `starts` ask for there, if that is more."""
-    step = max(1, _BLOCK // max(1, len(points)))
-    for first in range(0, len(starts), step):
-        part = slice(first, first + step)
-        offset = points[:, None] - starts[part]
-        t = (offset * edges[part]).sum(-1) / (edges[part] ** 2).sum(-1)
-        away = np.linalg.norm(offset - np.clip(t, 0, 1)[..., None] * edges[part], axis=-1)
-        wanted = np.maximum(wanted, (lengths[part] - GRADATION * away).max(axis=1))
-    return wanted
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 
 import tessera
 from tessera.boundary import resample_loops
-from tessera.cones import Places, build_cones, lowest
 from tessera.contour import clean_loop
 from tessera.edges import inner_edges
 from tessera.gradation import prepare
@@ -337,22 +336,6 @@ def test_the_remedy_for_too_many_triangles_is_one(sizing):
             factor *= float(str(error).split("Multiply it by ")[1].split()[0])
     with pytest.raises(tessera.ContourError):
         target_of(SQUARE, lambda points: factor / 1.3 * sizing(points), most=20_000)
-
-
-@settings(deadline=None, max_examples=30)
-@given(seeds, st.sampled_from([1, 7, 8, 9, 100, 500]))
-def test_the_lowest_of_cones_is_exact(seed, n):
-    rng = np.random.default_rng(seed)
-    start = rng.random((n, 2))
-    end = np.where(rng.random((n, 1)) < 0.5, start, rng.random((n, 2)))
-    places = Places(start, end, rng.random(n) * 0.2, rng.uniform(0, 0.5, n), rng.integers(0, 3, n))
-    points, domain = rng.uniform(-0.5, 1.5, (200, 2)), rng.integers(0, 4, 200)
-    along = end - start
-    share = ((points[:, None] - start) * along).sum(-1) / np.maximum((along**2).sum(-1), 1e-300)
-    away = np.linalg.norm(points[:, None] - start - np.clip(share, 0, 1)[..., None] * along, axis=-1)
-    values = np.where(domain[:, None] == places.domain, places.value + places.slope * away, np.inf)
-    found = lowest(build_cones(places), points, domain, np.full(200, 0.3))
-    assert found == pytest.approx(np.minimum(values.min(axis=1), 0.3), abs=1e-12)
 
 
 @settings(deadline=None, max_examples=30)
