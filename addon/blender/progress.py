@@ -18,6 +18,8 @@ Steps = Generator["Progress", None, T]
 WORDS = {
     "contours": "checking the outline",
     "sizing": "finding the sizes",
+    "coarsening": "finding room",
+    "division": "dividing",
     "networks": "placing triangles",
     "relaxation": "evening out",
     "smoothing": "smoothing",

@@ -14,7 +14,7 @@ from .outlines import Outlines
 from .refinement import Sizing, refine
 from .remeshing import improve
 from .sizing import grade_from_edges
-from .steps import Steps, within
+from .steps import Progress, Steps, within
 from .stopwatch import Stopwatch
 
 
@@ -50,6 +50,7 @@ def mesh_by_levels(
         most = np.full(len(target.most), MOST_LEVELS if passes else 0)
     with watch("coarsening"):
         coarsening = coarsen(outlines.loops, outlines.is_hole, outlines.domain, target, corner_angle, most)
+    yield Progress("coarsening", 0.0)
     parts, done, domains = [], 0.0, outlines.domains
     # Domains of as many levels together, and with one target or several, so that each goes the way it would alone.
     kind = 2 * coarsening.levels + target.constant
@@ -156,6 +157,7 @@ def _mesh_coarse(outlines: Outlines, coarsening: Coarsening, top: int, watch: St
             lengths = mean_edge_lengths(division.points, division.cells)
         else:
             lengths = wanted_edge_lengths(division.points, division.cells, division.owner, wanted)
+    yield Progress("division", 0.0)
     vertices, triangles, cell, fallbacks = yield from mesh_cells(division.points, division.cells, lengths, watch)
     fallbacks = np.bincount(division.owner, fallbacks, minlength=len(domain)).astype(np.int64)
     return RegionMeshes(vertices, triangles, division.owner[cell].astype(np.int64), fallbacks, fixed)

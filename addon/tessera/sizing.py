@@ -229,9 +229,14 @@ def from_values(points: ArrayLike, values: ArrayLike) -> Callable[[np.ndarray], 
 
 def _checked_points(points: ArrayLike, name: str) -> np.ndarray:
     points = np.array(points, dtype=np.float64)
-    if points.ndim != 2 or points.shape[1] != 2 or not len(points) or not np.isfinite(points).all():
-        message = f"{name} takes points as an array of finite numbers of shape (k, 2), k at least 1, "
-        raise ContourError("sizing", message + f"not of shape {points.shape}. Give x and y of each point.")
+    if points.ndim != 2 or points.shape[1] != 2 or not len(points):
+        message = f"{name} takes points as an array of shape (k, 2), k at least 1, not of shape {points.shape}. "
+        raise ContourError("sizing", message + "Give x and y of each point.")
+    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if len(bad):
+        x, y = points[bad[0]]
+        message = f"{name} takes finite numbers; its point {bad[0] + 1} is ({x:g}, {y:g}). Leave it out or mend it."
+        raise ContourError("sizing", message)
     return points
 
 
