@@ -30,6 +30,7 @@ TINY = """
 [folders]
 data = "{folder}/data"
 runs = "{folder}/runs"
+results = "{folder}/results"
 models = "{folder}/models"
 docs = "{folder}/docs"
 [data]

@@ -1,6 +1,7 @@
 """The report: ``python -m training.paper.report`` writes ``docs/reproduction.md`` and its pictures.
 
-From what the experiments have left in ``runs/paper/results/``; the sentences on differences are in `texts`.
+From what the experiments have left in ``training/paper/results/``, which is in the repository; neither data nor runs are
+needed. The sentences on differences are in `texts`.
 """
 
 from __future__ import annotations
@@ -15,11 +16,11 @@ from .. import reference
 from . import markdown, plots, settings, texts
 from .claims import claims
 from .comparing import read
-from .data import load
 from .sampling import GRID
+from .stages import FIGURES
 from .surfaces import inside, quality_surfaces, sampled, smoothed
 
-NAMES = ("populations", "counts", "resolution", "adaptive", "domains", "learning", "exclusion", "mixture", "speed")
+NAMES = ("populations", "counts", "resolution", "adaptive", "domains", "learning", "exclusion", "mixture", "speed", "surfaces")
 
 
 def main() -> None:
@@ -31,7 +32,7 @@ def main() -> None:
 def write_report(config: dict) -> Path:
     """Write the text and draw the pictures; returns the text's file."""
     found = {name: read(config, name) for name in NAMES}
-    found["stages"] = [row for n in config["data"]["train"] for row in read(config, f"stages_{n}")]
+    found["stages"] = [row for figure in FIGURES for row in read(config, f"fig_{figure}")]
     folder = config["folders"]["docs"]
     (folder / "reproduction").mkdir(parents=True, exist_ok=True)
     draw(folder / "reproduction", config, found)
@@ -92,16 +93,14 @@ def draw(folder: Path, config: dict, found: dict) -> None:
         plots.draw_stage(folder / f"fig_{figure}.png", found["stages"], figure)
     plots.draw_adaptive(folder / "adaptive.png", found["adaptive"])
     plots.draw_learning(folder / "learning.png", found["learning"])
-    with np.load(config["folders"]["runs"] / "results" / "domains.npz") as meshes:
+    with np.load(config["folders"]["results"] / "domains.npz") as meshes:
         names = [row["name"] for row in found["domains"]]
         plots.draw_meshes(
             folder / "domains.png", {n: (meshes[f"{n} vertices"], meshes[f"{n} triangles"]) for n in names}
         )
-    population = load(config, "train", config["nn3_star"]["n_contour"])
-    for m in (1, 2):
-        group = population.group(m)
-        if len(group):
-            draw_surface(folder / f"surface_{m}.png", group.contour[0], group.inner[0], float(group.l_s[0]))
+    for example in found["surfaces"]:
+        contour, inner = (np.array(example[name]) for name in ("contour", "inner"))
+        draw_surface(folder / f"surface_{len(inner)}.png", contour, inner, example["l_s"])
 
 
 def draw_surface(path: Path, contour: np.ndarray, inner: np.ndarray, l_s: float) -> None:
