@@ -23,5 +23,6 @@
     python -m training.paper               all of them
 
 What the experiments find is kept in ``training/paper/results/``, in the repository, so that the report can be made
-without data and without training. ``resolution``, ``adaptive``, ``mixture`` and ``learning`` train networks of their own.
+without data and without training. ``adaptive``, ``resolution``, ``mixture`` and ``learning`` train networks of their
+own.
 """

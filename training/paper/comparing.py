@@ -66,7 +66,10 @@ def errors(meshes: Meshes, contours: Contours, reference: np.ndarray) -> np.ndar
 
 
 def mean_errors(error: np.ndarray) -> dict:
-    """ē_worst and ē_mean of errors (k, 2), their standard errors, and of how many contours."""
+    """ē_worst and ē_mean of errors (k, 2), their standard errors, and of how many contours at their targets.
+
+    Meshes of one contour at several targets are counted apart (`populations.of_test` says how many those are).
+    """
     known = error[np.isfinite(error).all(axis=1)]
     if not len(known):
         return {"contours": 0, "worst": None, "mean": None, "worst_spread": None, "mean_spread": None}

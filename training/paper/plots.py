@@ -12,8 +12,9 @@ import matplotlib.ticker
 import numpy as np
 from PIL import Image
 
-from .claims import COUNT_ERRORS, NAMED
+from .claims import COUNT_ERRORS
 from .comparing import OURS, PAPER
+from .stage_claims import NAMED
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
