@@ -243,10 +243,11 @@ def _untrained(name: str, folder: Path, missing: list[str], n: int, m: int | Non
     other = (
         "" if m is None or n not in trained else f"a {'longer' if m > trained[n][0] else 'shorter'} edge length, or "
     )
+    were = "was" if len(missing) == 1 else "were"
     return ContourError(
         "untrained-group",
-        f"The paper's {' and '.join(missing)} {'was' if len(missing) == 1 else 'were'} not trained for {what}. There are "
-        f'networks for {there}. Take {other}networks="shipped".',
+        f"The paper's {' and '.join(missing)} {were} not trained for {what}. "
+        f'There are networks for {there}. Take {other}networks="shipped".',
     )
 
 

@@ -83,6 +83,7 @@ seed = 6
 nn1 = {{ n_contour = 10, steps = 10 }}
 nn2 = {{ n_contour = 10, n_inner = 4, steps = 10 }}
 nn3 = {{ n_contour = 6, n_inner = 4, steps = 10 }}
+nn3_star = {{ n_inner = 2, steps = 10 }}
 """
 
 
@@ -130,7 +131,7 @@ def test_exported_networks_mesh_and_name_their_groups(tiny):
     assert count[0] == 4 and is_inside(inner, contour, n).all()
     with pytest.raises(
         tessera.ContourError,
-        match="NN2 and NN3 were .* 10 edges with the 3 inner .* 6 edges with 0 to 4 .*; 10 with 2 and 4",
+        match=r"NN2 and NN3 were .* 10 edges with the 3 inner .* 6 edges with 0 to 4 .*; 10 with 2 and 4",
     ) as caught:
         roles.place(contour, n, np.array([3]), np.array([0.6]), tessera.scheme.Stopwatch())
     assert caught.value.reason == "untrained-group" and "a longer edge length" in caught.value.args[0]

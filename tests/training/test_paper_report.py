@@ -75,7 +75,8 @@ def test_numbers_and_answers_of_groups_reach_their_cells():
     assert (change.paper, change.ours, change.answer) == ("-23 %", "-22 %", "reproduced")
     assert by_text(found, "from N_I 8 to 10").answer == "not tested"
     assert by_text(found, "NN3 alone, ē_worst of N_C 10").ours == "+23.0 % (+10.2 % with sub-contours by CDT)"
-    assert by_text(found, "above those").ours.startswith("0 of 1 groups") and by_text(found, "above").answer == "worse"
+    above = by_text(found, "ē_worst is above those")
+    assert (above.ours, above.answer) == ("0 of 1 groups, not (10, 8)", "worse")
 
 
 def counts(errors):
@@ -137,8 +138,6 @@ def test_epochs_of_nn3_are_of_random_vertices_and_of_meshes(monkeypatch, tmp_pat
     random, meshes = epochs.connection_epochs(config, 8, 12, 1325)
     assert random == pytest.approx(51.2) and meshes == pytest.approx(20000 * 256 / 1325)
     assert epochs.connection_epochs(config, 8, 11, 1325) == (None, None)
-    notes |= {"step": 4000, "examples": 25500}
-    assert epochs.connection_epochs(config, 8, 12, 17953) == (pytest.approx(80.3, abs=0.1),) * 2
 
 
 def test_the_page_is_made_of_the_kept_results_and_networks():

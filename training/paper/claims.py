@@ -120,11 +120,12 @@ def _spread(rows: list[dict]) -> float:
 
 
 def _population(rows: list[dict]) -> Claim:
-    """Not answered: one network of each, whose errors hardly change."""
+    """Not answered: of one group's networks, whose errors hardly change."""
     falls = {row["role"]: 100 * (1 - row["loss"][-1] / row["loss"][0]) for row in rows}
     text = ", ".join(f"{role} {-falls[role]:+.1f} %" for role in ("NN2", "NN3") if role in falls)
     what = "section 3.2.3: NN3 depends more than NN2 on the size of the population"
-    return Claim(what, "yes", f"{text} (root mean squares, largest against smallest population)", "not tested")
+    text += " (root mean square, largest against smallest population), of one group each"
+    return Claim(what, "yes", text, "not tested")
 
 
 def _adaptive(rows: list[dict]) -> Iterable[Claim]:

@@ -45,7 +45,7 @@ def population_table(config: dict, found: dict) -> str:
         rows.append(
             [
                 str(n),
-                texts.PAPER_POPULATIONS.get(n, "not said"),
+                f"{texts.PAPER_POPULATIONS[n]:,}" if n in texts.PAPER_POPULATIONS else "not said",
                 f"{row['contours']:,}",
                 _range([epochs(folder / f"nn1_{n}.onnx")]),
                 f"{_ints(placed)}: {min(meshes, default=0):,} to {max(meshes, default=0):,}",
