@@ -107,7 +107,7 @@ def _count(name: str, folder: Path, contour: np.ndarray, n_contour: np.ndarray, 
     first, count = superimpose(contour, n_contour).first, np.zeros(len(contour))
     for n, _, rows in _groups(n_contour, np.zeros_like(n_contour)):
         if (n,) not in _trained("nn1", folder):
-            raise _untrained(name, folder, f"a contour of {n} edges")
+            raise _untrained(name, folder, ["NN1"], n)
         given = np.concatenate([_begun(contour[rows, :n], first[rows]), l_s[rows, None]], axis=1)
         count[rows] = _ask(folder / f"nn1_{n}.onnx", given)[:, 0]
     return np.rint(np.maximum(np.nan_to_num(count), 0)).astype(np.int64)
@@ -126,7 +126,11 @@ def _place(
     known = groups(name, folder)
     for n, m, _ in _groups(n_contour, n_inner):
         if m not in known.get(n, ()):
-            raise _untrained(name, folder, f"a contour of {n} edges with {m} inner vertices, which NN1 asks for")
+            roles = {"NN2": "nn2", "NN3*" if name == "paper*" else "NN3": CONNECTIONS[name]}
+            missing = [
+                role for role, files in roles.items() if (m or role != "NN2") and not is_trained(files, (n, m), folder)
+            ]
+            raise _untrained(name, folder, missing, n, m)
     return place(folder, contour, n_contour, n_inner, l_s, watch)
 
 
@@ -228,10 +232,28 @@ def rate(
     return values
 
 
-def _untrained(name: str, folder: Path, what: str) -> ContourError:
-    trained = "; ".join(f"N_C {n}: N_I {', '.join(map(str, m))}" for n, m in groups(name, folder).items())
-    message = (
-        f"None of the paper's networks was trained for {what}. The groups there are: {trained}. "
-        "Take another contour or edge length, or the shipped networks."
+def _untrained(name: str, folder: Path, missing: list[str], n: int, m: int | None = None) -> ContourError:
+    """missing: the roles that have no network for N_C = n and, where it is known, N_I = m."""
+    trained = groups(name, folder)
+    what = f"a contour of {n} edges" + ("" if m is None else f" with the {m} inner vertices that NN1 asks for")
+    there = "; ".join(
+        f"{of}{'' if i else ' edges'} with {_ranges(numbers)}{'' if i else ' inner vertices'}"
+        for i, (of, numbers) in enumerate(trained.items())
     )
-    return ContourError("untrained-group", message)
+    other = (
+        "" if m is None or n not in trained else f"a {'longer' if m > trained[n][0] else 'shorter'} edge length, or "
+    )
+    were = "was" if len(missing) == 1 else "were"
+    return ContourError(
+        "untrained-group",
+        f"The paper's {' and '.join(missing)} {were} not trained for {what}. "
+        f'There are networks for {there}. Take {other}networks="shipped".',
+    )
+
+
+def _ranges(numbers: list[int]) -> str:
+    """0, 1, 2, 5 as 0 to 2 and 5."""
+    starts = [k for k in range(len(numbers)) if not k or numbers[k] != numbers[k - 1] + 1]
+    parts = [numbers[a:b] for a, b in zip(starts, [*starts[1:], len(numbers)], strict=True)]
+    *first, last = [str(part[0]) if len(part) == 1 else f"{part[0]} to {part[-1]}" for part in parts]
+    return f"{', '.join(first)} and {last}" if first else last

@@ -16,12 +16,14 @@ from .report import write_report
 from .resolution import compare_grids
 from .speed import measure_speed
 from .stages import compare_all
+from .surfaces import keep_examples
 from .train import train_all
 
 STEPS = (
     make_all,
     train_all,
     compare_samplings,
+    keep_examples,
     export_all,
     count_all,
     compare_radii,

@@ -48,11 +48,7 @@ def of_number(config: dict, m: int) -> list[dict]:
     group = chosen(trained.group(m), star["contours"])
     sorts, found = star_sorts(config), {}
     for sampling in ("random", "adaptive"):
-        file = config["folders"]["data"] / f"star-{sampling}-{n:02d}-{m:02d}.npz"
-        size = star[sampling][str(m)][-1]
-        found[sampling] = kept_tables(
-            file, lambda sampling=sampling, size=size: samples(star["seed"], group, sampling, size)
-        )
+        found[sampling] = samples_of(config, group, sampling)
     sizes = [star[sampling][str(m)][star["levels"].index(level)] for sampling, level in sorts]
     parts = [rows(found[sampling], n, size) for (sampling, _), size in zip(sorts, sizes, strict=True)]
     net, notes = run(
@@ -71,6 +67,13 @@ def of_number(config: dict, m: int) -> list[dict]:
         row |= {"population": population, "epochs": notes["epochs"][number], "loss": notes["curve"][-1][1][number]}
         results.append(row | given_connected(as_roles(single, n, m, by_row=True), test))
     return results
+
+
+def samples_of(config: dict, group: Group, sampling: str) -> dict[str, np.ndarray]:
+    """The `samples` of a group at the highest confidence level, made once."""
+    star, (n, m) = config["nn3_star"], (group.contour.shape[1], group.inner.shape[1])
+    file = config["folders"]["data"] / f"star-{sampling}-{n:02d}-{m:02d}-{len(group)}.npz"
+    return kept_tables(file, lambda: samples(star["seed"], group, sampling, star[sampling][str(m)][-1]))
 
 
 def samples(seed: int, group: Group, sampling: str, size: int) -> dict[str, np.ndarray]:

@@ -66,7 +66,10 @@ def errors(meshes: Meshes, contours: Contours, reference: np.ndarray) -> np.ndar
 
 
 def mean_errors(error: np.ndarray) -> dict:
-    """ē_worst and ē_mean of errors (k, 2), their standard errors, and of how many contours."""
+    """ē_worst and ē_mean of errors (k, 2), their standard errors, and of how many contours at their targets.
+
+    Meshes of one contour at several targets are counted apart (`populations.of_test` says how many those are).
+    """
     known = error[np.isfinite(error).all(axis=1)]
     if not len(known):
         return {"contours": 0, "worst": None, "mean": None, "worst_spread": None, "mean_spread": None}
@@ -86,15 +89,20 @@ def populations(config: dict, n: int) -> tuple[Population, Population]:
 
 
 def write(config: dict, name: str, found: object) -> None:
-    """Keep what an experiment found for the report."""
-    file: Path = config["folders"]["runs"] / "results" / f"{name}.json"
+    """Keep what an experiment found for the report (training/paper/results/, in the repository)."""
+    file: Path = config["folders"]["results"] / f"{name}.json"
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(json.dumps(found, indent=1))
 
 
+def known(config: dict, name: str) -> list:
+    """The rows that an experiment has left, none where it has not been made."""
+    return read(config, name) if (config["folders"]["results"] / f"{name}.json").exists() else []
+
+
 def read(config: dict, name: str) -> object:
     """What an experiment has left."""
-    file: Path = config["folders"]["runs"] / "results" / f"{name}.json"
+    file: Path = config["folders"]["results"] / f"{name}.json"
     if not file.exists():
         raise FileNotFoundError(f"no {file}: run the experiments first, see training/paper/__init__.py")
     return json.loads(file.read_text())

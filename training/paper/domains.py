@@ -39,7 +39,7 @@ def mesh_all(config: dict) -> None:
         arrays |= {f"{case.name} vertices": mesh.vertices, f"{case.name} triangles": mesh.triangles}
         print(f"{case.name}: ({of.q_worst:.2f}, {of.q_mean:.2f}), {of.triangles} triangles", flush=True)
     write(config, "domains", found)
-    np.savez(config["folders"]["runs"] / "results" / "domains.npz", **arrays)
+    np.savez(config["folders"]["results"] / "domains.npz", **arrays)
 
 
 if __name__ == "__main__":

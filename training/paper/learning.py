@@ -1,7 +1,7 @@
 """Learning curves over populations: ``python -m training.paper.learning``. What larger populations would give.
 
-For one NN1, NN2 and NN3 each, networks of shares of the population are trained side by side for as many steps, and
-measured on the test population.
+For one NN1, NN2, NN3 and NN3* each, networks of shares of the population are trained side by side for as many steps,
+and measured on the test population.
 """
 
 from __future__ import annotations
@@ -14,10 +14,11 @@ import torch
 from tessera.paper_placement import GRID, grid_points, patches
 
 from . import settings
+from .adaptive import rows, samples_of
 from .batches import count_rows, from_groups, from_rows, from_tables, mixed, scores
 from .comparing import populations, test_group, write
 from .data import Group
-from .networks import Network, nn1, nn2, nn3
+from .networks import Network, nn1, nn2, nn3, nn3_star
 from .sampling import reference_tables
 from .train import chosen, run, tables_of
 
@@ -29,9 +30,9 @@ def main() -> None:
 
 
 def measure_curves(config: dict) -> None:
-    """All three curves: contours or meshes learnt from, and the loss on test contours."""
+    """All four curves: contours or meshes learnt from, and the loss on test contours."""
     torch.set_num_threads(1)
-    found = [curve(config) for curve in (count_curve, score_curve, table_curve)]
+    found = [curve(config) for curve in (count_curve, score_curve, table_curve, star_curve)]
     for row in found:
         print(
             f"{row['role']}: "
@@ -144,6 +145,41 @@ def table_curve(config: dict) -> dict:
         "what": what,
         "of": "meshes of the group",
         "size": sizes,
+        "loss": loss,
+    } | by_steps(notes)
+
+
+def star_curve(config: dict) -> dict:
+    """NN3*: contours, each with its adaptive samples, and the root mean square error of the table's rows."""
+    wanted, star, shares = config["learning"]["nn3_star"], config["nn3_star"], config["learning"]["shares"]
+    n, m = star["n_contour"], wanted["n_inner"]
+    trained, tested = populations(config, n)
+    group = chosen(trained.group(m), star["contours"])
+    found = {name: part for name, part in samples_of(config, group, "adaptive").items() if name != "population"}
+    parts = [rows(first_meshes(found, share), n, star["adaptive"][str(m)][-1]) for share in shares]
+    net, notes = run(
+        config,
+        "nn3_star",
+        f"learning_nn3_star_{n}_{m}",
+        lambda: nn3_star(n, m, len(shares)),
+        lambda: (from_rows(parts), [len(given) for given, _ in parts]),
+        None,
+        wanted["steps"],
+        config["learning"]["seed"],
+    )
+    test = reference_tables(test_group(config, trained, tested, m))
+    each = {"points": np.repeat(test["points"], n, axis=0), "mesh": np.arange(n * len(test["mesh"]))}
+    each["edge"] = np.tile(np.arange(n), len(test["mesh"]))
+    each["row"] = test["table"].reshape(len(each["mesh"]), -1)
+    given, answer = rows(each, n, 1)
+    loss = _asked(net, given, lambda out: np.sqrt(np.square(out - answer).mean()))
+    return {
+        "role": "NN3*",
+        "n": n,
+        "m": m,
+        "what": "root mean square error of the table's rows",
+        "of": "contours",
+        "size": [max(1, round(share * len(group))) for share in shares],
         "loss": loss,
     } | by_steps(notes)
 

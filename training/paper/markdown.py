@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Sequence
-from pathlib import Path
 
 import numpy as np
-import onnx
 
 from . import texts
-from .claims import NAMED, Claim
+from .answers import MEASURED, Claim
 from .comparing import OURS, PAPER
+from .epochs import connection_epochs, epochs, exceptions
 from .fitting import BATCH
+from .stage_claims import NAMED
+
+TABLE_1 = {("random", 1): 689, ("random", 2): 1378, ("random", 4): 2756}  # mean population by sampling and N_I
+TABLE_1 |= {("adaptive", m): 450 * m for m in (1, 2, 4)}
 
 
 def table(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -21,12 +23,15 @@ def table(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 
 def claim_table(answers: Sequence[Claim]) -> str:
-    """A line for each claim, and how many of each answer."""
+    """A line for each claim, and how many of each answer by what is measured."""
     rows = [[c.what, c.paper, c.ours, f"**{c.answer}**", c.shipped] for c in answers]
-    kinds = sorted({claim.answer for claim in answers})
-    count = ", ".join(f"{sum(claim.answer == kind for claim in answers)} {kind}" for kind in kinds)
+    counts = []
+    for name in MEASURED:
+        own = [claim.answer for claim in answers if claim.of == name]
+        count = ", ".join(f"{own.count(kind)} {kind}" for kind in sorted(set(own)))
+        counts.append(f"- {len(own)} about {name}: {count}." if own else "")
     columns = ["claim", "paper", "the paper's networks, here", "answer", "the shipped networks"]
-    return f"Of {len(answers)}: {count}.\n\n{table(columns, rows)}"
+    return "\n".join([f"Of {len(answers)} claims:", "", *filter(None, counts), "", table(columns, rows)])
 
 
 def population_table(config: dict, found: dict) -> str:
@@ -36,29 +41,53 @@ def population_table(config: dict, found: dict) -> str:
         n = row["n"]
         placed, connected = config["nn2"]["groups"][n], config["nn3"]["groups"].get(n, ())
         meshes = [row["groups"][m] for m in placed if m < len(row["groups"])]
+        seen = [connection_epochs(config, n, m, meshes_of(found, n, m)) for m in connected]
         rows.append(
             [
                 str(n),
-                texts.PAPER_POPULATIONS.get(n, "not said"),
+                f"{texts.PAPER_POPULATIONS[n]:,}" if n in texts.PAPER_POPULATIONS else "not said",
                 f"{row['contours']:,}",
                 _range([epochs(folder / f"nn1_{n}.onnx")]),
                 f"{_ints(placed)}: {min(meshes, default=0):,} to {max(meshes, default=0):,}",
                 f"{100 * row['covered']:.0f} %",
                 _range([epochs(folder / f"nn2_{n}_{m}.onnx") for m in placed]),
                 _ints(connected) if connected else "—",
-                _range([epochs(folder / f"nn3_{n}_{m}.onnx") for m in connected]),
+                _range([random for random, _ in seen]),
+                _range([references for _, references in seen]),
             ]
         )
     columns = ["N_C", "contours, paper", "contours", "NN1: epochs (3000)", "NN2's groups N_I: meshes", "of all meshes"]
-    return table([*columns, "NN2: epochs (5000)", "NN3's groups N_I", "NN3: epochs (5000)"], rows)
+    columns += ["NN2: epochs (5000)", "NN3's groups N_I"]
+    return table([*columns, "NN3: epochs of random vertices (5000)", "of Gmsh's meshes (5000)"], rows)
 
 
-def epochs(file: Path) -> float | None:
-    """How often an exported network has seen its examples; None where it is not there."""
-    if not file.exists():
-        return None
-    about = {entry.key: json.loads(entry.value) for entry in onnx.load(file).metadata_props}
-    return about["step"] * BATCH / about["examples"]
+def meshes_of(found: dict, n: int, m: int) -> int:
+    """Training meshes of a group."""
+    groups = next((row["groups"] for row in found["populations"]["by edges"] if row["n"] == n), ())
+    return groups[m] if m < len(groups) else 0
+
+
+def population_text(config: dict) -> str:
+    """What populations and epochs are, and which networks are exceptions."""
+    return texts.POPULATIONS.format(**config, exceptions=exceptions(config))
+
+
+def learning_text(config: dict, found: dict) -> str:
+    """With how many times as many epochs the paper has."""
+    folder, parts = config["folders"]["models"], []
+    groups = {role: [(n, m) for n, inner in config[role]["groups"].items() for m in inner] for role in ("nn2", "nn3")}
+    seen = {
+        "NN1": (3000, [epochs(folder / f"nn1_{n}.onnx") for n in config["data"]["train"]]),
+        "NN2": (5000, [epochs(folder / "nn2_{}_{}.onnx".format(*key)) for key in groups["nn2"]]),
+        "NN3's random vertices": (
+            5000,
+            [connection_epochs(config, *key, meshes_of(found, *key))[0] for key in groups["nn3"]],
+        ),
+    }
+    for name, (paper, here) in seen.items():
+        ratios = [paper / value for value in here if value]
+        parts += [f"{min(ratios):.0f} to {max(ratios):.0f} ({name})"] if ratios else []
+    return texts.LEARNING.format(ratios=", ".join(parts))
 
 
 def _range(values: Sequence[float | None]) -> str:
@@ -94,7 +123,7 @@ def count_table(rows: list[dict]) -> str:
             spread = next(r["deviation"] for r in rows if (r["n"], r["l_s"]) == (n, l_s))
             cells.append(f"{pair[0]:.2f} / {pair[1]:.2f} ({spread:.1f})")
         lines.append([str(n), *cells])
-    return "The paper's networks / the shipped ones (standard deviation of N_I).\n\n" + table(
+    return "By l_s: the paper's networks / the shipped ones (standard deviation of N_I).\n\n" + table(
         ["N_C", *(f"{t:g}" for t in targets)], lines
     )
 
@@ -121,8 +150,10 @@ def exclusion_table(rows: list[dict]) -> str:
     return table(["radius of exclusion", *names], [["mean of the groups' ē_worst, %, training meshes", *means]])
 
 
-def mixture_part(found: dict) -> str:
+def mixture_part(config: dict, found: dict) -> str:
     """NN3's ē_worst by the share of the reference's vertices that it learns from."""
+    wanted = config["nn3"]
+    fewest = round(wanted["steps"] * wanted["share"] * BATCH / wanted["references"])
     lines = []
     for row in found["shares"]:
         cells = (
@@ -132,59 +163,66 @@ def mixture_part(found: dict) -> str:
         shares = (f"{100 * row['share'].get(name, 0):.0f} %" for name in ("reference", "placed"))
         lines.append([*shares, *cells])
     names = [f"on {name} vertices: ē_worst, %" for name in found["shares"][0]["vertices"]]
-    text = texts.MIXTURE.format(one_in=round(1 / found["shares"][0]["share"]["reference"]), **found)
-    return text + "\n\n" + table(["examples of the reference's vertices", "of NN2's", *names], lines)
+    one_in = round(1 / found["shares"][0]["share"]["reference"])
+    text = texts.MIXTURE.format(one_in=one_in, fewest=fewest, **found)
+    return texts.filled(text) + "\n\n" + table(["examples of the reference's vertices", "of NN2's", *names], lines)
 
 
-def stage_parts(rows: list[dict], exclusion: list[dict], mixture: dict) -> list[str]:
+def stage_parts(config: dict, found: dict) -> list[str]:
     """Figs. 22, 24, 25 and 27, each with its sentence, picture and table of groups."""
-    parts = []
+    parts, rows = [], found["stages"]
+    tested = {(row["n"], of["m"]): of for row in found["populations"]["by edges"] for of in row["tested"]}
+    star = config["nn3_star"]["n_contour"], 1
     for figure, (title, text) in texts.STAGES.items():
         own = [row for row in rows if row["figure"] == figure and row["m"] is not None]
-        parts += [f"## Fig. {figure}: {title}", text]
+        text = text.format(few=meshes_of(found, *star))
+        parts += [f"## Fig. {figure}: {title}", texts.section(text, f"stages {figure}")]
         if figure == 27:
             parts.append(_shares(rows))
         if figure == 22:
-            parts.append(exclusion_table(exclusion))
+            parts.append(exclusion_table(found["exclusion"]))
         if figure == 25:
-            parts.append(mixture_part(mixture))
-        parts += [f"![Fig. {figure}](reproduction/fig_{figure}.png)", stage_table(own, figure)]
+            parts.append(mixture_part(config, found["mixture"]))
+        table_of = stage_table(own, figure, {} if figure == 27 else tested)
+        parts += [f"![Fig. {figure}](reproduction/fig_{figure}.png)", table_of]
     return parts
 
 
-def stage_table(rows: list[dict], figure: int) -> str:
-    """A line for each group: ē_worst / ē_mean by both networks."""
+def stage_table(rows: list[dict], figure: int, tested: dict[tuple[int, int], dict]) -> str:
+    """A line for each group: ē_worst / ē_mean by both networks; tested: of how many contours its meshes are."""
     lines = []
     for n, m in sorted({(row["n"], row["m"]) for row in rows}):
+        own = [row for row in rows if (row["n"], row["m"]) == (n, m)]
         cells = []
         for name in (PAPER,) if figure == 24 else (PAPER, OURS):
-            row = next((r for r in rows if (r["n"], r["m"], r["networks"]) == (n, m, name) and r["contours"]), None)
+            row = next((row for row in own if row["networks"] == name and row["contours"]), None)
             cells.append(
                 "—" if row is None else f"{row['worst']:+.1f} ± {row['worst_spread']:.1f} / {row['mean']:+.1f}"
             )
-        count = next((row["contours"] for row in rows if (row["n"], row["m"]) == (n, m)), 0)
-        named = NAMED[figure].get((n, m))
         if figure == 25:
-            row = next((r for r in rows if (r["n"], r["m"]) == (n, m) and r.get("rest by CDT") is not None), None)
+            row = next((row for row in own if row.get("rest by CDT") is not None), None)
             cells.insert(1, "—" if row is None else f"{row['rest by CDT']:+.1f}")
-        lines.append([str(n), str(m), str(count), "" if named is None else f"{named:g}", *cells])
+        named = NAMED[figure].get((n, m))
+        counts = [str(own[0]["contours"]), *([str(tested[n, m]["contours"])] if (n, m) in tested else [])]
+        lines.append([str(n), str(m), *counts, "" if named is None else f"{named:g}", *cells])
     names = ["calculated tables"] if figure == 24 else [PAPER, OURS]
-    head = ["N_C", "N_I", "contours", "paper's ē_worst", *(f"{name}: ē_worst / ē_mean, %" for name in names)]
+    errors = [f"{name}: ē_worst / ē_mean, %" for name in names]
     if figure == 25:
-        head.insert(5, f"{PAPER}, sub-contours by CDT: ē_worst, %")
+        errors.insert(1, f"{PAPER}, sub-contours by CDT: ē_worst, %")
+    head = ["N_C", "N_I", "meshes", *(["of contours"] if tested else []), "paper's ē_worst", *errors]
     return f"<details><summary>All groups</summary>\n\n{table(head, lines)}\n\n</details>"
 
 
 def _shares(rows: list[dict]) -> str:
     shares = [row for row in rows if row["figure"] == 27 and row["m"] is None]
     text = ", ".join(
-        f"{100 * row['in trained groups'] / max(1, row['meshes']):.0f} % of N_C {row['n']}" for row in shares
+        f"{100 * row['in trained groups'] / max(1, row['meshes']):.0f} % (N_C {row['n']})" for row in shares
     )
     own = [row for row in rows if row["figure"] == 27 and row["m"] and row["networks"] == PAPER and row["contours"]]
     fell = np.average([r["fallbacks"] for r in own], weights=[r["contours"] for r in own]) if own else 0.0
     return (
-        f"NN1 asks for a trained group in {text}. Sub-contours of groups without a network have no table, and take the "
-        f"constrained Delaunay triangulation's element: {fell:.2f} elements a contour."
+        f"The share of meshes for which NN1 asks for a trained group: {text}. Sub-contours of groups without a network "
+        f"have no table, and take the constrained Delaunay triangulation's element: {fell:.2f} elements a mesh."
     )
 
 
@@ -194,7 +232,7 @@ def adaptive_table(rows: list[dict]) -> str:
         [
             str(row["m"]),
             row["sampling"],
-            f"{row['population']:.0f}",
+            f"{row['population']:.0f} ({TABLE_1[row['sampling'], row['m']]})",
             str(row["level"]),
             str(row["size"]),
             f"{row['contours learnt from']}",
@@ -205,8 +243,8 @@ def adaptive_table(rows: list[dict]) -> str:
         ]
         for row in rows
     ]
-    columns = ["N_I", "sampling", "inner vertices a contour", "confidence, %", "sample", "contours", "epochs"]
-    return table([*columns, "training loss (root)", "ē_worst, %", "tested"], lines)
+    columns = ["N_I", "sampling", "inner vertices a contour (paper)", "confidence, %", "sample", "contours", "epochs"]
+    return table([*columns, "training loss (root)", "ē_worst, %", "meshes tested"], lines)
 
 
 def domain_table(rows: list[dict]) -> str:

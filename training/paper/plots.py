@@ -12,8 +12,10 @@ import matplotlib.ticker
 import numpy as np
 from PIL import Image
 
-from .claims import COUNT_ERRORS, NAMED
+from .claims import COUNT_ERRORS
 from .comparing import OURS, PAPER
+from .stage_claims import NAMED
+from .texts import PAPER_POPULATIONS
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
@@ -28,10 +30,13 @@ def draw_populations(path: Path, found: dict) -> None:
     figure, axes = plt.subplots(2, -(-(len(rows) + 1) // 2), figsize=(13, 5))
     axes = axes.ravel()
     axes[0].bar([str(row["n"]) for row in rows], [row["contours"] for row in rows], color="#457b9d")
-    axes[0].set(title="Fig. 17: contours", xlabel="N_C")
+    for number, row in enumerate(rows):
+        if row["n"] in PAPER_POPULATIONS:
+            axes[0].plot(number, PAPER_POPULATIONS[row["n"]], "*", ms=10, color="#e76f51", mec="black", mew=0.5)
+    axes[0].set(title="Fig. 17 (stars: in the paper's text)", xlabel="N_C", ylabel="contours")
     for ax, row in zip(axes[1:], rows, strict=False):
         ax.bar(range(len(row["groups"])), row["groups"], color="#457b9d")
-        ax.set(title=f"Fig. 18: N_C {row['n']}", xlabel="N_I", xlim=(-1, 40))
+        ax.set(title=f"Fig. 18: N_C {row['n']}", xlabel="N_I", ylabel="meshes", xlim=(-1, 40))
     _hide(axes, len(rows) + 1)
     _save(figure, path)
 
@@ -129,17 +134,19 @@ def draw_surfaces(
     path: Path, contour: np.ndarray, surfaces: Sequence[np.ndarray], points: np.ndarray, others: np.ndarray
 ) -> None:
     """Figs. 15 and 16: an edge's quality surface, smoothed, and the vertices sampled from it (k, 2)."""
-    figure, axes = plt.subplots(1, 3, figsize=(11, 3.6))
+    figure, axes = plt.subplots(1, 3, figsize=(11.5, 3.6), layout="constrained")
     closed = np.concatenate([contour, contour[:1]])
+    highest = max(float(np.nanmax(surface)) for surface in surfaces)
     titles = "worst quality by the vertex's place", "smoothed", "sampled by curvature"
     for ax, surface, title in zip(axes, (*surfaces, surfaces[-1]), titles, strict=True):
         shown = np.where(surface > 0, surface, np.nan)
-        ax.imshow(shown, origin="lower", extent=(-1.2, 1.2, -1.2, 1.2), cmap="viridis")
+        image = ax.imshow(shown, origin="lower", extent=(-1.2, 1.2, -1.2, 1.2), cmap="viridis", vmin=0, vmax=highest)
         ax.plot(*closed.T, "-", color="black", lw=1)
         ax.plot(*closed[:2].T, "-", color="#e63946", lw=3)
         ax.plot(*others.T, "s", color="#e63946", ms=5)
         ax.set(title=title, xticks=[], yticks=[], xlim=(-1.6, 1.6), ylim=(-1.6, 1.6))
     axes[2].plot(*points.T, ".", color="white", ms=5)
+    figure.colorbar(image, ax=axes, label="q_worst")
     _save(figure, path)
 
 
@@ -174,7 +181,8 @@ def _hide(axes: np.ndarray, used: int) -> None:
 
 def _save(figure: plt.Figure, path: Path) -> None:
     """With few colours, which makes a file a quarter as large."""
-    figure.tight_layout()
+    if figure.get_layout_engine() is None:
+        figure.tight_layout()
     with BytesIO() as file:
         figure.savefig(file, dpi=_DPI)
         Image.open(file).convert("RGB").quantize(64).save(path, optimize=True)

@@ -1,11 +1,11 @@
-"""Figs. 22, 24, 25 and 27: ``python -m training.paper.stages [N_C ...]``. Each stage alone, and the whole scheme.
+"""Figs. 22, 24, 25 and 27: ``python -m training.paper.stages 22 [N_C ...]``. A stage alone (27: the whole scheme).
 
 By groups (N_C, N_I) of test contours, by the paper's networks where the group was trained and by the shipped ones.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
 
 import numpy as np
@@ -21,29 +21,61 @@ from .. import tables
 from ..evaluate.meshers import by_delaunay, of_scheme
 from ..evaluate.meshes import Meshes, measure
 from . import settings
-from .comparing import PAPER, as_contours, asking, compared, errors, mean_errors, populations, test_group, write
+from .comparing import (
+    PAPER,
+    as_contours,
+    asking,
+    compared,
+    errors,
+    known,
+    mean_errors,
+    populations,
+    test_group,
+    write,
+)
 from .data import Group, Population
+
+FIGURES = (22, 24, 25, 27)
 
 
 def main() -> None:
     """Compare all stages, and keep what was found."""
-    config, arguments = settings.from_command_line(__doc__, ("edges", {"nargs": "*", "type": int, "metavar": "N_C"}))
-    compare_all(config, arguments.edges)
+    config, arguments = settings.from_command_line(
+        __doc__,
+        ("figure", {"type": int, "choices": FIGURES}),
+        ("edges", {"nargs": "*", "type": int, "metavar": "N_C"}),
+    )
+    compare(config, arguments.figure, arguments.edges)
 
 
-def compare_all(config: dict, edges: Sequence[int] = ()) -> None:
-    """All four figures, of some numbers of edges or all."""
-    roles = compared(config)
-    for n in edges or config["data"]["train"]:
-        trained, tested = populations(config, n)
-        found = [{"n": n, **row} for row in whole(config, roles, tested)]
-        for m in config["nn2"]["groups"][n]:
-            group = test_group(config, trained, tested, m)
-            if len(group):
-                rows = [*placed(config, roles, group), *connected(config, roles, group)]
-                found += [{"n": n, "m": m, **row} for row in rows]
-        write(config, f"stages_{n}", found)
-        print(f"N_C {n}: {len(found)} rows", flush=True)
+def compare_all(config: dict) -> None:
+    """All four figures."""
+    for figure in FIGURES:
+        compare(config, figure)
+
+
+def compare(config: dict, figure: int, edges: Sequence[int] = ()) -> None:
+    """A figure's groups of some numbers of edges, or of all; what is there of others stays."""
+    roles, edges = compared(config), edges or list(config["data"]["train"])
+    found = [row for row in known(config, f"fig_{figure}") if row["n"] not in edges]
+    for n in edges:
+        rows = list(of_edges(config, roles, figure, n))
+        found = sorted([*found, *rows], key=lambda row: row["n"])
+        write(config, f"fig_{figure}", found)
+        print(f"Fig. {figure}, N_C {n}: {len(rows)} rows", flush=True)
+
+
+def of_edges(config: dict, roles: dict[str, Roles], figure: int, n: int) -> Iterator[dict]:
+    """A figure's rows of one N_C."""
+    trained, tested = populations(config, n)
+    if figure == 27:
+        yield from ({"n": n, **row} for row in whole(config, roles, tested))
+        return
+    stage = {22: placed, 24: calculated, 25: connected}[figure]
+    for m in config["nn2"]["groups"][n]:
+        group = test_group(config, trained, tested, m)
+        if len(group):
+            yield from ({"n": n, "m": m, "figure": figure, **row} for row in stage(config, roles, group))
 
 
 def placed(config: dict, roles: dict[str, Roles], group: Group) -> list[dict]:
@@ -58,28 +90,32 @@ def placed(config: dict, roles: dict[str, Roles], group: Group) -> list[dict]:
         places, count = place(contours.points, contours.n_contour, asked, group.l_s, Stopwatch())
         points = join_vertices(contours.points, contours.n_contour, places, count)
         error = errors(by_delaunay(contours, points, count), contours, group.quality)
-        row = {"figure": 22, "networks": name, **mean_errors(error), "incomplete": int((count < m).sum())}
-        found.append(row)
+        found.append({"networks": name, **mean_errors(error), "incomplete": int((count < m).sum())})
     return found
 
 
+def calculated(config: dict, roles: dict[str, Roles], group: Group) -> list[dict]:
+    """Fig. 24: the reference's vertices, connected by calculated tables, against CDT of them. No network is asked."""
+
+    def table(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, entries: np.ndarray) -> np.ndarray:
+        return tables.connection_tables(points, n_contour, n_inner)[tuple(entries.T)]
+
+    return [{"networks": PAPER, **_triangulated(group, table)}]
+
+
 def connected(config: dict, roles: dict[str, Roles], group: Group) -> list[dict]:
-    """Figs. 24 and 25: the reference's vertices, connected by calculated tables and by NN3, against CDT of them.
+    """Fig. 25: the reference's vertices, connected by NN3, against CDT of them.
 
     "rest by CDT": ē_worst where the paper's NN3 has no tables for sub-contours, so that CDT decides there.
     """
-
-    def calculated(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, entries: np.ndarray) -> np.ndarray:
-        return tables.connection_tables(points, n_contour, n_inner)[tuple(entries.T)]
-
-    found, folder = [{"figure": 24, "networks": PAPER, **_triangulated(group, calculated)}], config["folders"]["models"]
+    found, folder = [], config["folders"]["models"]
     n, m = group.contour.shape[1], group.inner.shape[1]
     for name, role in roles.items():
         if name != PAPER:
-            found.append({"figure": 25, "networks": name, **given_connected(role, group)})
+            found.append({"networks": name, **given_connected(role, group)})
         elif paper.is_trained("nn3", (n, m), folder):
             rest = given_connected(asking(paper.table_network(folder, n, m), n, m, by_row=False), group)["worst"]
-            found.append({"figure": 25, "networks": name, **given_connected(role, group), "rest by CDT": rest})
+            found.append({"networks": name, **given_connected(role, group), "rest by CDT": rest})
     return found
 
 

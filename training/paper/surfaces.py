@@ -1,4 +1,7 @@
-"""Adaptive sampling of inner vertices (section 2.5.3, Figs. 15 and 16): quality surfaces and their curvature."""
+"""Adaptive sampling of inner vertices (section 2.5.3, Figs. 15 and 16): quality surfaces and their curvature.
+
+``python -m training.paper.surfaces`` keeps the meshes that the report draws surfaces of.
+"""
 
 from __future__ import annotations
 
@@ -8,12 +11,32 @@ from tessera.cavity import distances_to_contour, is_inside
 from tessera.paper_placement import grid_points
 
 from .. import tables
+from . import settings
+from .comparing import write
+from .data import load
 from .sampling import APART, GRID
 
 EACH = 45  # vertices of a surface (section 3.2.4)
 APART_OF_SEVERAL = 0.3  # of l_s
 _SIGMA = 1.5  # of the smoothing, in grid spacings
 _FLOOR = 0.05  # of the largest weight, so that flat parts are seen too
+
+
+def main() -> None:
+    """Keep the examples."""
+    config, _ = settings.from_command_line(__doc__)
+    keep_examples(config)
+
+
+def keep_examples(config: dict) -> None:
+    """The first meshes with one and with two inner vertices (Fig. 15, Fig. 16): contour, inner vertices and l_s."""
+    population, found = load(config, "train", config["nn3_star"]["n_contour"]), []
+    for m in (1, 2):
+        group = population.group(m)
+        if len(group):
+            example = {"contour": group.contour[0].tolist(), "inner": group.inner[0].tolist()}
+            found.append(example | {"l_s": float(group.l_s[0])})
+    write(config, "surfaces", found)
 
 
 def inside(contour: np.ndarray, l_s: float) -> np.ndarray:
@@ -73,3 +96,7 @@ def sampled(rng: np.random.Generator, surfaces: np.ndarray, chosen: np.ndarray) 
     with np.errstate(divide="ignore"):
         key = np.log(weight) + rng.gumbel(size=weight.shape)
     return np.argsort(-key, axis=1)[:, : min(EACH, int(chosen.sum()))]
+
+
+if __name__ == "__main__":
+    main()

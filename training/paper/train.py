@@ -116,7 +116,7 @@ def run(
     steps: int | None = None,
     seed: int | None = None,
 ) -> tuple[Network, dict]:
-    """A run's networks and notes; what is not trained is trained first.
+    """A run's networks and notes; what is not trained is trained first. ValueError: begun with another population.
 
     make: the networks; prepare: batches, and each network's number of examples, which is what an epoch is.
     """
@@ -124,8 +124,11 @@ def run(
     file: Path = config["folders"]["runs"] / f"{name}.pt"
     torch.manual_seed(seed)
     net = make()
-    if not file.exists() or torch.load(file, weights_only=False)["step"] < steps:
+    begun = torch.load(file, weights_only=False) if file.exists() else None
+    if begun is None or begun["step"] < steps:
         draw, examples = prepare()
+        if begun is not None and begun["notes"]["examples"] != examples:
+            raise ValueError(f"{file} was begun with another population: delete it, or set the population back")
         epochs = [steps * BATCH / count for count in examples]
         about = {"role": role, "seed": seed, "steps": steps, "examples": examples, "epochs": epochs}
         curve = fit(net, draw, steps, role, file, about | {"code": code_version()} | (notes or {}))
