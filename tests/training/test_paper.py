@@ -121,6 +121,12 @@ def test_a_second_run_makes_nothing_again(tiny):
     assert (file.stat().st_mtime_ns, shard.stat().st_mtime_ns) == before
 
 
+def test_a_run_does_not_go_on_with_another_population(tiny):
+    more = tiny | {"nn3": tiny["nn3"] | {"steps": 25, "references": 5}}
+    with pytest.raises(ValueError, match="nn3_6_1.pt was begun with another population"):
+        train.train_nn3(more, data.load(more, "train", 6), 1)
+
+
 def test_exported_networks_mesh_and_name_their_groups(tiny):
     roles = paper.load("paper", tiny["folders"]["models"])
     groups = paper.groups("paper", tiny["folders"]["models"])

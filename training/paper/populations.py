@@ -43,7 +43,8 @@ def of_test(config: dict, trained: Population, tested: Population, m: int) -> di
     alike: how many times as large standard errors would be if all meshes of a contour had the same error.
     """
     group = test_group(config, trained, tested, m)
-    times = np.unique(group.contour.reshape(len(group), -1), axis=0, return_counts=True)[1]
+    flat = group.contour.reshape(len(group), 2 * group.contour.shape[1])
+    times = np.unique(flat, axis=0, return_counts=True)[1]
     alike = float(np.sqrt((times**2).sum() / max(1, len(group))))
     return {"m": m, "meshes": len(group), "contours": len(times), "alike": alike}
 
