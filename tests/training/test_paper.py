@@ -123,7 +123,7 @@ def test_a_second_run_makes_nothing_again(tiny):
 
 def test_a_run_does_not_go_on_with_another_population(tiny):
     more = tiny | {"nn3": tiny["nn3"] | {"steps": 25, "references": 5}}
-    with pytest.raises(ValueError, match="nn3_6_1.pt was begun with another population"):
+    with pytest.raises(ValueError, match=r"nn3_6_1\.pt was begun with another population"):
         train.train_nn3(more, data.load(more, "train", 6), 1)
 
 
