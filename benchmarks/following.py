@@ -27,7 +27,8 @@ def main() -> None:
         curve = draw()
         bpy.ops.tessera.mesh_curve(size_by="TRIANGLE_COUNT", triangle_count=n_triangles, keep_linked=True)
         obj = bpy.context.object
-        obj.tessera.settings.edge_length = float(np.mean(obj.tessera.edge_lengths[1]))
+        # Edges are a little shorter than their target.
+        obj.tessera.settings.edge_length = 1.05 * float(np.mean(obj.tessera.edge_lengths[1]))
         obj.tessera.settings.size_by = "EDGE_LENGTH"
         line = ""
         for draft in (True, False):
