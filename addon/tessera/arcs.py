@@ -19,7 +19,7 @@ from .graph import Graph, graph_faces, half_edges
 
 
 @dataclass(frozen=True)
-class _Arc:
+class Arc:
     """vertices (k + 1,) by number, the last of a closed one is the first again; sides: of its edges; free: no end."""
 
     vertices: np.ndarray
@@ -42,7 +42,7 @@ def resample_graph(graph: Graph, edge_length: float | Callable[[np.ndarray], np.
 
     edge_length: one, or a function of points (n, 2); corner_angle: in radians. Loops over the arcs.
     """
-    arcs = [_from_a_corner(graph, arc, corner_angle) for arc in _find_arcs(graph)]
+    arcs = [from_a_corner(graph, arc, corner_angle) for arc in find_arcs(graph)]
     if not arcs:
         return graph
     points = [graph.points[arc.vertices] for arc, _ in arcs]
@@ -57,11 +57,12 @@ def resample_graph(graph: Graph, edge_length: float | Callable[[np.ndarray], np.
         for (arc, breaks), knot in zip(arcs, knots, strict=True)
     ]
     arcs = [arc for arc, _ in arcs]
-    faces = _faces_beside(_sampled(graph, arcs, [np.arange(n, dtype=float) for n in length]), len(arcs))
+    given = _sampled(graph, arcs, [np.arange(n, dtype=float) for n in length])
+    faces = faces_beside(given.graph, given.arc)
     rounds = 0
     while True:
         sampled = _sampled(graph, arcs, places)
-        bad = _bad_edges(sampled, len(arcs), faces)
+        bad = bad_edges(sampled.graph, sampled.arc, faces)
         if not bad.any():
             return sampled.graph
         inserted = _given_between(graph, arcs, sampled, np.flatnonzero(bad), rounds < PATIENCE)
@@ -72,7 +73,7 @@ def resample_graph(graph: Graph, edge_length: float | Callable[[np.ndarray], np.
         rounds += 1
 
 
-def _find_arcs(graph: Graph) -> list[_Arc]:
+def find_arcs(graph: Graph) -> list[Arc]:
     """The arcs of a graph, each in the direction of its first edge."""
     tails, heads, back = half_edges(graph.edges)
     n = len(graph.edges)
@@ -90,11 +91,11 @@ def _find_arcs(graph: Graph) -> list[_Arc]:
             continue
         edge, turned = np.divmod(path[0], n)[::-1]
         sides = graph.sides[edge][:: -1 if turned else 1]
-        arcs.append(_Arc(np.append(tails[path], heads[path[-1]]), sides, len(starts) == 0))
+        arcs.append(Arc(np.append(tails[path], heads[path[-1]]), sides, len(starts) == 0))
     return arcs
 
 
-def _from_a_corner(graph: Graph, arc: _Arc, corner_angle: float) -> tuple[_Arc, np.ndarray]:
+def from_a_corner(graph: Graph, arc: Arc, corner_angle: float) -> tuple[Arc, np.ndarray]:
     """The arc, a free one turned to start at a corner or at its leftmost vertex; which vertices but the last stay."""
     points = graph.points[arc.vertices]
     goes = np.diff(points, axis=0)
@@ -104,12 +105,12 @@ def _from_a_corner(graph: Graph, arc: _Arc, corner_angle: float) -> tuple[_Arc, 
     if arc.free:
         first = np.lexsort((points[:-1, 1], points[:-1, 0], ~corner))[0]
         around = np.roll(arc.vertices[:-1], -first)
-        arc, corner = _Arc(np.append(around, around[0]), arc.sides, True), np.roll(corner, -first)
+        arc, corner = Arc(np.append(around, around[0]), arc.sides, True), np.roll(corner, -first)
     corner[0] = True
     return arc, corner
 
 
-def _sampled(graph: Graph, arcs: list[_Arc], places: list[np.ndarray]) -> _Sampled:
+def _sampled(graph: Graph, arcs: list[Arc], places: list[np.ndarray]) -> _Sampled:
     """The graph with vertices at some places of each arc: first the vertices that stay, then those of the arcs."""
     (stay,) = np.nonzero(graph.kept)
     number = np.full(len(graph.points), -1)
@@ -136,24 +137,24 @@ def _sampled(graph: Graph, arcs: list[_Arc], places: list[np.ndarray]) -> _Sampl
     return _Sampled(new, np.repeat(np.arange(len(arcs)), count), np.concatenate(places), np.concatenate(finish))
 
 
-def _faces_beside(sampled: _Sampled, n_arcs: int) -> np.ndarray:
+def faces_beside(graph: Graph, arc: np.ndarray) -> np.ndarray:
     """Which face is to the left and to the right of each arc, and around each vertex that stays and has no edges.
 
-    Faces are named by the first arc's side that they have, the unbounded one is -1.
+    arc: (e,) that each of the graph's edges is part of. Faces are named by the first arc's side that they have, the
+    unbounded one is -1.
     """
-    faces = graph_faces(sampled.graph.points, sampled.graph.edges)
-    _, first = np.unique(sampled.arc, return_index=True)
-    beside = faces.of_half_edge[np.concatenate([first, first + len(sampled.arc)])]
-    name = np.full(faces.count, 2 * n_arcs)
-    np.minimum.at(name, beside, np.arange(2 * n_arcs))
+    faces = graph_faces(graph.points, graph.edges)
+    _, first = np.unique(arc, return_index=True)
+    beside = faces.of_half_edge[np.concatenate([first, first + len(arc)])]
+    name = np.full(faces.count, len(beside))
+    np.minimum.at(name, beside, np.arange(len(beside)))
     name[-1] = -1
-    stay = faces.of_point[sampled.graph.kept]
+    stay = faces.of_point[graph.kept]
     return np.concatenate([name[beside], np.where(stay < 0, -2, name[stay])])
 
 
-def _bad_edges(sampled: _Sampled, n_arcs: int, faces: np.ndarray) -> np.ndarray:
+def bad_edges(graph: Graph, arc: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """(e,) which edges meet others; if none do, those of arcs that have other faces beside them than before."""
-    graph = sampled.graph
     alone = np.setdiff1d(np.flatnonzero(graph.kept), graph.edges)
     ends = np.concatenate([graph.edges, np.column_stack([alone, alone])])
     pairs = crossing_pairs(graph.points[ends[:, 0]], graph.points[ends[:, 1]], np.zeros(len(ends), dtype=np.int64))
@@ -162,13 +163,13 @@ def _bad_edges(sampled: _Sampled, n_arcs: int, faces: np.ndarray) -> np.ndarray:
     bad = bad[: len(graph.edges)]
     if bad.any():
         return bad
-    changed = _faces_beside(sampled, n_arcs) != faces
-    arcs = changed[: 2 * n_arcs].reshape(2, -1).any(axis=0)
-    return arcs[sampled.arc] if arcs.any() else np.full(len(bad), changed.any())
+    changed = faces_beside(graph, arc) != faces
+    arcs = changed[: 2 * (int(arc.max()) + 1)].reshape(2, -1).any(axis=0)
+    return arcs[arc] if arcs.any() else np.full(len(bad), changed.any())
 
 
 def _given_between(
-    graph: Graph, arcs: list[_Arc], sampled: _Sampled, edges: np.ndarray, farthest: bool
+    graph: Graph, arcs: list[Arc], sampled: _Sampled, edges: np.ndarray, farthest: bool
 ) -> list[tuple[int, np.ndarray]]:
     """Given vertices that some edges pass by: the arc, and places on it; only the farthest of each edge, or all."""
     found = []

@@ -24,14 +24,10 @@ from .spacing import Target
 _MANY = 50
 
 
-def graph_polygons(
-    graph: Graph, edge_length: np.ndarray, target: Target | None = None
-) -> tuple[np.ndarray, Polygons, np.ndarray]:
-    """Points (p, 2), the graph's first, the polygons of them that tile its regions, and the edges (f, 2) that stay.
+def graph_polygons(graph: Graph, edge_length: np.ndarray, target: Target | None = None) -> tuple[np.ndarray, Polygons]:
+    """Points (p, 2), the graph's first, and the polygons of them that tile its regions, which are their owners.
 
-    edge_length: (r,) the longest target of each region; target: as of `division.divide`. Edges that stay lie between
-    polygons and must be edges of the mesh; a point without edges is one from itself to itself. The polygons' owner is
-    their region.
+    edge_length: (r,) the longest target of each region; target: as of `division.divide`.
     """
     faces = graph_faces(graph.points, graph.edges)
     region = np.full(faces.count, -1)
@@ -55,9 +51,7 @@ def graph_polygons(
     goal = np.concatenate([heads[inside], head, tail])
     walk, size = find_faces(points, origin, goal, np.concatenate([twin, n + s + np.arange(s), n + np.arange(s)]))
     of = np.concatenate([region[faces.of_half_edge[inside]], owner, owner])
-    alone = np.flatnonzero(graph.home >= 0)
-    stay = np.concatenate([graph.edges[graph.inner], np.column_stack([alone, alone])])
-    return points, Polygons(origin[walk], size, of[walk[np.cumsum(size) - size]]), stay
+    return points, Polygons(origin[walk], size, of[walk[np.cumsum(size) - size]])
 
 
 def _spacing(graph: Graph, edge_length: np.ndarray, target: Target | None) -> np.ndarray:

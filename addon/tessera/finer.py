@@ -9,37 +9,35 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Arcs:
-    """A boundary to which a mesh's boundary edges are to be refined.
+    """What a mesh's boundary edges, and those that must stay, are to be refined to.
 
-    points: (n, 2) of all loops, one behind the other; size: (m,) of the loops; coarse, fine: (n,) bool, which points
-    the mesh has on its boundary, and which it is to have; number: (v,) int, the point that each vertex of the mesh is,
-    or -1.
+    points: (n, 2); walk: (w,) their numbers along chains, one behind the other, of which a closed one ends with the
+    point that it starts with; size: (m,) of the chains; coarse, fine: (n,) bool, which points the mesh has, among them
+    the ends of all chains, and which it is to have; number: (v,) int, the point that each vertex of the mesh is, or -1.
     """
 
     points: np.ndarray
+    walk: np.ndarray
     size: np.ndarray
     coarse: np.ndarray
     fine: np.ndarray
     number: np.ndarray
 
     def between(self, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Points between the ends of boundary edges (k, 2): how many (k,), and their numbers, each edge's in order."""
-        loop = np.repeat(np.arange(len(self.size)), self.size)
-        start, end = self.number[edges].T
-        rank, count, first = _ranks(self.fine, loop)
-        coarse_rank, coarse_count, _ = _ranks(self.coarse, loop)
-        of = loop[start]
-        ahead = (coarse_rank[end] - coarse_rank[start]) % coarse_count[of] == 1
-        sign = np.where(ahead, 1, -1)
-        inserted = (sign * (rank[end] - rank[start])) % count[of] - 1
+        """Points between the ends of edges (k, 2): how many (k,), and their numbers, each edge's in order."""
+        kept = self.fine[self.walk]
+        walk, chain = self.walk[kept], np.repeat(np.arange(len(self.size)), self.size)[kept]
+        ends = np.flatnonzero(self.coarse[walk])
+        same = np.diff(chain[ends]) == 0
+        first, last = ends[:-1][same], ends[1:][same]
+        key, (start, end) = self._keys(walk[first], walk[last]), self.number[edges].T
+        order = np.argsort(key, kind="stable")
+        of = order[np.searchsorted(key[order], self._keys(start, end))]
+        inserted = last[of] - first[of] - 1
         edge = np.repeat(np.arange(len(edges)), inserted)
         step = np.arange(len(edge)) - np.repeat(np.cumsum(inserted) - inserted, inserted) + 1
-        place = (rank[start[edge]] + sign[edge] * step) % count[of[edge]]
-        return inserted, np.flatnonzero(self.fine)[first[of[edge]] + place]
+        ahead = (walk[first[of]] == start)[edge]
+        return inserted, walk[np.where(ahead, first[of][edge] + step, last[of][edge] - step)]
 
-
-def _ranks(kept: np.ndarray, loop: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Among the kept points of each loop: the place of each point (n,), how many there are, and before them (m,)."""
-    count = np.bincount(loop, kept).astype(np.int64)
-    first = np.cumsum(count) - count
-    return np.cumsum(kept) - 1 - first[loop], count, first
+    def _keys(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
+        return np.minimum(one, other) * len(self.points) + np.maximum(one, other)

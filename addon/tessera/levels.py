@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -44,20 +44,20 @@ def mesh_by_levels(
 
     corner_angle: in radians; passes: of relaxation, 0 for no improvement, without which levels are of no use; most:
     (d,) levels that each domain may have, at first as many as it can. Where a level's boundary does not fit the coarser
-    mesh, the domain starts again with a level less. Domains with a graph have no levels.
+    mesh, the domain starts again with a level less.
     """
     if most is None:
         most = np.full(len(target.most), MOST_LEVELS if passes else 0)
     with watch("coarsening"):
-        coarsening = coarsen(outlines.loops, outlines.is_hole, outlines.domain, target, corner_angle, most)
+        coarsening = coarsen(outlines, target, corner_angle, most)
     yield Progress("coarsening", 0.0)
     parts, done, domains = [], 0.0, outlines.domains
     # Domains of as many levels together, and with one target or several, so that each goes the way it would alone.
     kind = 2 * coarsening.levels + target.constant
     for number in np.unique(kind[domains]):
-        some, rows, regions = outlines.of_domains(np.flatnonzero(kind == number))
+        some, regions = coarsening.of_domains(np.flatnonzero(kind == number))
         end = done + len(regions) / len(domains)
-        steps = _mesh_levels(some, coarsening.of_loops(rows), passes, watch)
+        steps = _mesh_levels(some, passes, watch)
         meshes, failed = yield from within(steps, done, end)
         parts.append((meshes, regions))
         done = end
@@ -85,26 +85,26 @@ def _join(parts: list[tuple[RegionMeshes, np.ndarray]], n_regions: int) -> Regio
     return RegionMeshes(vertices, np.concatenate(triangles), np.concatenate(regions), fallbacks, together)
 
 
-def _mesh_levels(
-    outlines: Outlines, coarsening: Coarsening, passes: int, watch: Stopwatch
-) -> Steps[tuple[RegionMeshes, np.ndarray]]:
+def _mesh_levels(coarsening: Coarsening, passes: int, watch: Stopwatch) -> Steps[tuple[RegionMeshes, np.ndarray]]:
     """The meshes of domains that have as many levels each, and the domains that failed on the way and have none."""
-    domain = outlines.domains
+    domain, together = coarsening.outlines.domains, coarsening.outlines.together()
     top = int(coarsening.levels[domain[0]])
     # A level has about four times as many elements as the one before.
     ends = 0.25 ** np.arange(top, -1, -1.0)
-    meshes = yield from within(_mesh_coarse(outlines, coarsening, top, watch), 0.0, ends[0] / 4)
+    meshes, number = yield from within(_mesh_coarse(coarsening, top, watch), 0.0, ends[0] / 4)
     vertices, triangles, region, fallbacks = meshes.vertices, meshes.triangles, meshes.region, meshes.fallbacks
-    number, failed = np.flatnonzero(coarsening.level >= top), []
+    fixed, failed = meshes.fixed, []
     for level in range(top, -1, -1):
         middle, end = (0.5 if passes else 1.0) * ends[top - level], ends[top - level]
         number = np.concatenate([number, np.full(len(vertices) - len(number), -1)])
         arcs = coarsening.arcs(level, number) if level < top else None
-        sizing = _sizing(outlines, coarsening, level)
-        refinement = refine(vertices, triangles, region, sizing, watch, arcs, meshes.fixed)
+        sizing = _sizing(coarsening, level)
+        # The regions of one graph fail together.
+        refinement = refine(vertices, triangles, together[region], sizing, watch, arcs, fixed)
         refined = yield from within(refinement, end / 4, middle)
         np.add.at(fallbacks, region, refined.fallbacks)
         number = refined.number if arcs else number
+        fixed = refined.fixed
         failed.append(np.unique(domain[refined.failed]))
         fallbacks[np.isin(domain, failed[-1])] = 0
         stay = ~np.isin(domain[region[refined.parent]], failed[-1])
@@ -112,10 +112,10 @@ def _mesh_levels(
         if not len(triangles):
             break
         if passes:
-            improvement = improve(vertices, triangles, region, sizing, passes, watch, meshes.fixed)
+            improvement = improve(vertices, triangles, region, sizing, passes, watch, fixed)
             vertices, triangles, region, more = yield from within(improvement, middle, end)
             fallbacks[: len(more)] += more
-    return RegionMeshes(vertices, triangles, region, fallbacks, meshes.fixed), np.concatenate(failed)
+    return RegionMeshes(vertices, triangles, region, fallbacks, fixed), np.concatenate(failed)
 
 
 @dataclass(frozen=True)
@@ -130,28 +130,24 @@ class _Wanted:
         return self.coarsening.wanted(self.level, points, self.domain[region])
 
 
-def _at_level(outlines: Outlines, coarsening: Coarsening, level: int) -> Outlines:
-    """The outlines with the boundary of a level."""
-    return replace(outlines, loops=coarsening.loops(level))
-
-
-def _sizing(outlines: Outlines, coarsening: Coarsening, level: int) -> Sizing:
+def _sizing(coarsening: Coarsening, level: int) -> Sizing:
     """The edge length at points (n, 2) of regions (n,), the same for both sides of an edge between two regions."""
-    wanted = _Wanted(coarsening, level, outlines.domains)
-    sizing = grade_from_edges(*_at_level(outlines, coarsening, level).edges(), wanted)
+    outlines = coarsening.at_level(level)
+    sizing = grade_from_edges(*outlines.edges(), _Wanted(coarsening, level, outlines.domains))
     if not outlines.graphs:
         return sizing
     together = outlines.together()
     return lambda points, region: sizing(points, together[region])
 
 
-def _mesh_coarse(outlines: Outlines, coarsening: Coarsening, top: int, watch: Stopwatch) -> Steps[RegionMeshes]:
-    """The mesh of the coarsest level, whose boundary's vertices come first."""
-    target, domain = coarsening.target, outlines.domains
+def _mesh_coarse(coarsening: Coarsening, top: int, watch: Stopwatch) -> Steps[tuple[RegionMeshes, np.ndarray]]:
+    """The mesh of the coarsest level, and the number of the outlines' point that each of its vertices is, or -1."""
+    target, outlines = coarsening.target, coarsening.at_level(top)
+    domain = outlines.domains
     with watch("division"):
         wanted = _Wanted(coarsening, top, domain)
         varying = None if target.constant[domain[0]] and top == 0 else wanted
-        points, polygons, fixed = _at_level(outlines, coarsening, top).polygons(target.most[domain] * 2.0**top, varying)
+        points, polygons, given = outlines.polygons(target.most[domain] * 2.0**top, varying)
         division = divide(points, polygons, target.most[domain] * 2.0**top, varying)
         if varying is None:
             lengths = mean_edge_lengths(division.points, division.cells)
@@ -160,4 +156,7 @@ def _mesh_coarse(outlines: Outlines, coarsening: Coarsening, top: int, watch: St
     yield Progress("division", 0.0)
     vertices, triangles, cell, fallbacks = yield from mesh_cells(division.points, division.cells, lengths, watch)
     fallbacks = np.bincount(division.owner, fallbacks, minlength=len(domain)).astype(np.int64)
-    return RegionMeshes(vertices, triangles, division.owner[cell].astype(np.int64), fallbacks, fixed)
+    number = np.full(len(vertices), -1)
+    number[given] = np.flatnonzero(coarsening.level >= top)
+    fixed = given[outlines.staying()] if outlines.graphs else None
+    return RegionMeshes(vertices, triangles, division.owner[cell].astype(np.int64), fallbacks, fixed), number

@@ -45,6 +45,30 @@ class Outlines:
         domain, first = np.unique(self.domains, return_index=True)
         return dict(zip(domain.tolist(), first.tolist(), strict=True))
 
+    @cached_property
+    def first_points(self) -> dict[int, int]:
+        """Where each graph's points start, by domain, when those of the loops come before, one loop after the other."""
+        sizes = [sum(map(len, self.loops)), *(len(graph.points) for graph in self.graphs.values())]
+        return dict(zip(self.graphs, np.cumsum(sizes)[:-1].tolist(), strict=True))
+
+    def all_points(self) -> np.ndarray:
+        """(p, 2) the points of the loops, then those of the graphs."""
+        return np.concatenate([np.zeros((0, 2)), *self.loops, *(graph.points for graph in self.graphs.values())])
+
+    def domain_of_points(self) -> np.ndarray:
+        """(p,) the domain of each of them."""
+        sizes = [len(part) for part in (*self.loops, *(graph.points for graph in self.graphs.values()))]
+        return np.repeat(np.concatenate([self.domain, np.array(list(self.graphs), dtype=np.int64)]), sizes)
+
+    def staying(self) -> np.ndarray:
+        """(f, 2) edges of graphs between elements, by the numbers of their points, and points by themselves, twice."""
+        found = [np.zeros((0, 2), dtype=np.int64)]
+        for number, graph in self.graphs.items():
+            alone = np.flatnonzero(graph.home >= 0)
+            found.append(np.concatenate([graph.edges[graph.inner], np.column_stack([alone, alone])]))
+            found[-1] += self.first_points[number]
+        return np.concatenate(found)
+
     def of_domains(self, numbers: np.ndarray) -> tuple[Outlines, np.ndarray, np.ndarray]:
         """What bounds some domains by themselves, and the numbers here of their loops and of their regions."""
         rows = np.flatnonzero(np.isin(self.domain, numbers))
@@ -84,32 +108,28 @@ class Outlines:
             own[first : first + graph.n_regions] = first
         return own
 
-    def polygons(
-        self, edge_length: np.ndarray, target: LengthAt | None
-    ) -> tuple[np.ndarray, Polygons, np.ndarray | None]:
-        """Points (p, 2), the polygons that tile the regions, and edges (f, 2) that stay, a point by itself too.
+    def polygons(self, edge_length: np.ndarray, target: LengthAt | None) -> tuple[np.ndarray, Polygons, np.ndarray]:
+        """Points (p, 2), the polygons that tile the regions, and which of them are those of `all_points` (k,).
 
-        edge_length: (r,) the longest target of each region; target: as of `division.divide`. The last is None where
-        there are no graphs.
+        edge_length: (r,) the longest target of each region; target: as of `division.divide`.
         """
-        if not self.graphs:
-            return *bridge_holes(self.loops, self.region, self.is_hole, edge_length, target), None
-        points, parts, fixed, total = [], [], [], 0
+        points, parts, own_points, total = [], [], [], 0
         if self.loops:
             longest = edge_length[: len(self.loops)]
             own, polygons = bridge_holes(self.loops, self.region, self.is_hole, longest, target)
             points, parts, total = [own], [polygons], len(own)
+            own_points.append(np.arange(sum(map(len, self.loops))))
         for number, graph in self.graphs.items():
             first = self.firsts[number]
             longest = edge_length[first : first + graph.n_regions]
-            own, polygons, stay = graph_polygons(graph, longest, _shifted(target, first))
+            own, polygons = graph_polygons(graph, longest, _shifted(target, first))
             points.append(own)
             parts.append(Polygons(polygons.corners + total, polygons.size, polygons.owner + first))
-            fixed.append(stay + total)
+            own_points.append(total + np.arange(len(graph.points)))
             total += len(own)
         names = ("corners", "size", "owner")
         polygons = Polygons(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
-        return np.concatenate(points), polygons, np.concatenate(fixed)
+        return np.concatenate(points), polygons, np.concatenate(own_points)
 
 
 def outlines_of(results: list, nested: list[Nesting], planar: dict[int, PlanarDomain], numbers: list[int]) -> Outlines:

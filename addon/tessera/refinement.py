@@ -43,7 +43,7 @@ class Refined:
     """A finer mesh: vertices (n, 2), the old ones first; triangles (t, 3); the old triangle that each is part of (t,).
 
     fallbacks: (m,) of each old triangle; number: (n,) the point of the boundary that each vertex is, or -1; failed:
-    domains whose boundary does not fit the mesh: their triangles are the old ones.
+    domains whose boundary does not fit the mesh: their triangles are the old ones; fixed: (f, 2) the finer edges.
     """
 
     vertices: np.ndarray
@@ -52,6 +52,7 @@ class Refined:
     fallbacks: np.ndarray
     number: np.ndarray
     failed: np.ndarray
+    fixed: np.ndarray | None
 
 
 def refine(
@@ -63,10 +64,10 @@ def refine(
     arcs: Arcs | None = None,
     fixed: np.ndarray | None = None,
 ) -> Steps[Refined]:
-    """Refine a mesh until its inner edges follow the sizing function, and its boundary the arcs, if there are any.
+    """Refine a mesh until its inner edges follow the sizing function, and boundary and fixed ones the arcs, if any.
 
     vertices: (n, 2); triangles: (m, 3); domain: (m,) int of each triangle; sizing: (k, 2) points and the domains (k,)
-    that they are in -> (k,) wanted edge lengths; fixed: (f, 2) edges that stay, as the boundary does without arcs.
+    that they are in -> (k,) wanted edge lengths; fixed: (f, 2) edges that are split by arcs alone, as the boundary is.
     """
     parent = np.arange(len(triangles))
     fallbacks = np.zeros(len(triangles), dtype=np.int64)
@@ -78,7 +79,9 @@ def refine(
         home = np.zeros(len(vertices), dtype=np.int64)
         home[triangles] = domain[parent][:, None]
         home = home[edges[:, 0]]
-        may_split = inner & ~_beside_slivers(vertices, triangles, edges) & ~np.isin(home, failed) & ~among(edges, fixed)
+        stays = among(edges, fixed)
+        inner &= ~stays
+        may_split = inner & ~_beside_slivers(vertices, triangles, edges) & ~np.isin(home, failed)
         with watch("sizing"):
             segments, wanted = _segments(vertices[edges], may_split, home, sizing)
         if turn and segments.max(initial=1) > 1:
@@ -93,6 +96,7 @@ def refine(
         points, places = _inserted(vertices[edges], segments, wanted), np.full((segments - 1).sum(), -1)
         if arcs is not None:
             segments, points, places = _with_arcs(arcs, edges, ~inner, segments, points)
+            fixed = _split_fixed(fixed, edges, stays, segments, len(vertices))
         if segments.max(initial=1) == 1:
             break
         points = np.concatenate([vertices, points])
@@ -108,7 +112,7 @@ def refine(
         np.add.at(fallbacks, parent, fell)
         triangles = np.concatenate([triangles[~split], new])
         parent = np.concatenate([parent[~split], parent[row]])
-    return Refined(vertices, triangles, parent, fallbacks, number, failed)
+    return Refined(vertices, triangles, parent, fallbacks, number, failed, fixed)
 
 
 def _with_arcs(
@@ -126,6 +130,23 @@ def _with_arcs(
     all_points[of_arc], places[of_arc] = arcs.points[between], between
     all_points[~of_arc] = points[np.repeat(~on_boundary, old - 1)]
     return segments, all_points, places
+
+
+def _split_fixed(
+    fixed: np.ndarray | None, edges: np.ndarray, stays: np.ndarray, segments: np.ndarray, n: int
+) -> np.ndarray | None:
+    """The fixed edges (f, 2), once edges (e, 2), of which they are some (e,), have come to segments (e,).
+
+    n: from which inserted vertices count, each edge's from its start to its end. Points by themselves stay.
+    """
+    if fixed is None:
+        return None
+    edge = np.repeat(np.flatnonzero(stays), segments[stays])
+    step = np.arange(len(edge)) - np.repeat(np.cumsum(segments[stays]) - segments[stays], segments[stays])
+    first = (np.cumsum(segments - 1) - (segments - 1))[edge] + n
+    start = np.where(step == 0, edges[edge, 0], first + step - 1)
+    end = np.where(step == segments[edge] - 1, edges[edge, 1], first + step)
+    return np.concatenate([np.column_stack([start, end]), fixed[fixed[:, 0] == fixed[:, 1]]])
 
 
 def _unfit(points: np.ndarray, cells: np.ndarray, number: np.ndarray) -> np.ndarray:

@@ -34,15 +34,14 @@ def spaced(n: int, radius: float = 1.0) -> np.ndarray:
 
 def coarsened(loops, edge_length, most=3):
     (loops,) = clean_domains([loops])
-    is_hole = np.isin(np.arange(len(loops)), nesting(loops).holes)
-    domain = np.zeros(len(loops), dtype=np.int64)
-    return coarsen(loops, is_hole, domain, target(edge_length), CORNER, np.array([most]))
+    outlines = outlines_of([loops], [nesting(loops)], {}, [0])
+    return coarsen(outlines, target(edge_length), CORNER, np.array([most]))
 
 
 def test_a_round_domain_starts_with_a_quarter_of_its_boundary_twice():
     found = coarsened([spaced(128)], 2 * np.pi / 128)
     assert found.levels[0] == 3
-    assert [len(found.loops(level)[0]) for level in range(4)] == [128, 64, 32, 16]
+    assert [len(found.at_level(level).loops[0]) for level in range(4)] == [128, 64, 32, 16]
 
 
 def test_a_thin_domain_has_no_levels():
@@ -58,7 +57,7 @@ def test_corners_stay():
     found = coarsened([square], 1 / 40)
     assert found.levels[0] >= 2
     for level in range(found.levels[0] + 1):
-        assert {(0, 0), (1, 0), (1, 1), (0, 1)} <= set(map(tuple, found.loops(level)[0].tolist()))
+        assert {(0, 0), (1, 0), (1, 1), (0, 1)} <= set(map(tuple, found.at_level(level).loops[0].tolist()))
 
 
 @given(seeds)
@@ -67,11 +66,11 @@ def test_boundaries_of_all_levels_are_simple_and_hold_the_coarser_ones(seed):
     loops = [tessera.boundary.resample(loop, 0.04) for loop in clean_domains([random_domain(seed)])[0]]
     found = coarsened(loops, 0.04)
     for level in range(int(found.levels[0]) + 1):
-        start = np.concatenate(found.loops(level))
-        ends = np.concatenate([np.roll(loop, -1, axis=0) for loop in found.loops(level)])
+        start = np.concatenate(found.at_level(level).loops)
+        ends = np.concatenate([np.roll(loop, -1, axis=0) for loop in found.at_level(level).loops])
         assert not len(crossing_pairs(start, ends, np.zeros(len(start), dtype=np.int64)))
-        assert all(len(loop) >= 3 for loop in found.loops(level))
-        finer = {tuple(p) for p in np.concatenate(found.loops(max(level - 1, 0))).tolist()}
+        assert all(len(loop) >= 3 for loop in found.at_level(level).loops)
+        finer = {tuple(p) for p in np.concatenate(found.at_level(max(level - 1, 0)).loops).tolist()}
         assert {tuple(p) for p in start.tolist()} <= finer
 
 
@@ -194,7 +193,7 @@ def test_where_every_domain_fails_a_level_all_start_again_with_one_less(monkeypa
             return refined
         failures.append(np.unique(domain))
         n, parent = len(triangles), np.arange(len(triangles))
-        return Refined(vertices, triangles, parent, np.zeros(n, dtype=np.int64), arcs.number, failures[-1])
+        return Refined(vertices, triangles, parent, np.zeros(n, dtype=np.int64), arcs.number, failures[-1], fixed)
 
     h = 2 * np.pi / 128
     cleaned = clean_domains([[loop] for loop in loops])
