@@ -7,10 +7,13 @@ from hypothesis import strategies as st
 
 import tessera
 from tessera import levels
+from tessera.arcs import resample_graph
 from tessera.coarsening import coarsen
+from tessera.constraints import Domain, PlanarDomain, planar_domain
 from tessera.contour import clean_domains, nesting
 from tessera.crossings import crossing_pairs
 from tessera.gradation import Target
+from tessera.graph import graph_faces
 from tessera.levels import mesh_by_levels
 from tessera.outlines import outlines_of
 from tessera.quality import element_quality
@@ -19,6 +22,7 @@ from tessera.steps import finish
 from tessera.stopwatch import Stopwatch
 from tests.library.polygons import circle, seeds
 from tests.library.test_bridges import random_domain
+from tests.library.test_constraints import random_constraints
 from tests.validity import check_mesh
 
 CORNER = np.radians(32)
@@ -72,6 +76,36 @@ def test_boundaries_of_all_levels_are_simple_and_hold_the_coarser_ones(seed):
         assert all(len(loop) >= 3 for loop in found.at_level(level).loops)
         finer = {tuple(p) for p in np.concatenate(found.at_level(max(level - 1, 0)).loops).tolist()}
         assert {tuple(p) for p in start.tolist()} <= finer
+
+
+@given(seeds, st.sampled_from([0.04, 0.1]))
+@settings(max_examples=15, deadline=None)
+def test_coarser_graphs_have_edges_that_do_not_meet_and_the_same_faces(seed, edge_length):
+    loops = random_domain(seed)
+    points, lines = random_constraints(seed, loops)
+    graph = resample_graph(planar_domain(Domain(loops, None, points, lines)).graph, edge_length, CORNER)
+    outlines = outlines_of([None], [None], {0: PlanarDomain([], graph, ())}, [0])
+    found = coarsen(outlines, target(edge_length), CORNER, np.array([3]))
+    n_faces = graph_faces(graph.points, graph.edges).count
+    for level in range(int(found.levels[0]) + 1):
+        coarser = found.at_level(level).graphs[0]
+        start, end = coarser.points[coarser.edges.T]
+        assert not len(crossing_pairs(start, end, np.zeros(len(start), dtype=np.int64)))
+        assert graph_faces(coarser.points, coarser.edges).count == n_faces
+        finer = {tuple(p) for p in found.at_level(max(level - 1, 0)).graphs[0].points.tolist()}
+        assert (
+            {tuple(p) for p in graph.points[graph.kept].tolist()}
+            <= {tuple(p) for p in coarser.points.tolist()}
+            <= finer
+        )
+
+
+def test_two_regions_are_as_good_as_one():
+    square = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
+    mesh = tessera.mesh_regions([[square], [square + [1, 0]]], 0.05)
+    assert mesh.report.q_mean > 0.98
+    border = np.sort(mesh.vertices[np.abs(mesh.vertices[:, 0] - 1) < 1e-12, 1])
+    assert np.diff(border).max() < 1.2 * 0.05
 
 
 @given(seeds, st.integers(0, 3))

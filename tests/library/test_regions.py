@@ -139,8 +139,8 @@ def test_the_region_is_the_outer_contour_around_each_triangle():
 def test_a_batch_with_graphs_in_it_is_each_domain_alone():
     touching = [SQUARE, SQUARE + 1]
     domains = [[circle(40)], touching, [SQUARE, SQUARE / 3 + 0.3], [SQUARE * 2, [[0, 1], [0.6, 0.6], [0.6, 1.3]]]]
-    for domain, mesh in zip(domains, tessera.mesh_many(domains, 0.15), strict=True):
-        alone = tessera.mesh(domain, 0.15)
+    for domain, mesh in zip(domains, tessera.mesh_many(domains, 0.06), strict=True):
+        alone = tessera.mesh(domain, 0.06)
         np.testing.assert_array_equal(alone.vertices, mesh.vertices)
         np.testing.assert_array_equal(alone.triangles, mesh.triangles)
         np.testing.assert_array_equal(alone.region, mesh.region)
