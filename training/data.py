@@ -10,6 +10,7 @@ import numpy as np
 from numba import njit
 
 from tessera.cavity import even_lengths, is_inside
+from tessera.elements import describe
 from tessera.scheme import connect, join_vertices
 from tessera.stopwatch import Stopwatch
 from tessera.transform import superimpose
@@ -216,7 +217,8 @@ def table_batch(rng: np.random.Generator, examples: Examples) -> dict[str, np.nd
     """Contours, inner vertices and their calculated connection tables: of the recursion's levels from the first on.
 
     As many contours as there are examples, first of all those of the first level, and as many of the others, drawn.
-    ``table`` is (n, N, N + M, 2) with the padded N and M of ``contour`` and ``inner``; 0 where no element is possible.
+    ``table`` is (n, N, V, 2), 0 where no element is possible; beside it is what NN3 is told of the entries of the
+    others, in their order.
     """
     inner, n_inner = move_batch(rng, examples)
     fits = (n_inner > 0) | (examples.n_inner == 0)
@@ -229,17 +231,10 @@ def table_batch(rng: np.random.Generator, examples: Examples) -> dict[str, np.nd
         table = np.zeros((nc, len(vertices), 2))
         if connection_table(np.ascontiguousarray(vertices), nc, len(vertices), table):
             made.append((vertices, nc, table))
-    n, m = max(nc for _, nc, _ in made), max(1, max(len(vertices) - nc for vertices, nc, _ in made))
-    batch = {
-        "contour": np.zeros((len(made), n, 2)),
-        "inner": np.zeros((len(made), m, 2)),
-        "n_contour": np.array([nc for _, nc, _ in made]),
-        "n_inner": np.array([len(vertices) - nc for vertices, nc, _ in made]),
-        "table": np.zeros((len(made), n, n + m, 2)),
-    }
+    n_contour = np.array([nc for _, nc, _ in made])
+    size = np.array([len(vertices) for vertices, _, _ in made])
+    points, tables = np.zeros((len(made), size.max(), 2)), np.zeros((len(made), n_contour.max(), size.max(), 2))
     for row, (vertices, nc, table) in enumerate(made):
-        ni = len(vertices) - nc
-        batch["contour"][row, :nc], batch["inner"][row, :ni] = vertices[:nc], vertices[nc:]
-        batch["table"][row, :nc, :nc] = table[:, :nc]
-        batch["table"][row, :nc, n : n + ni] = table[:, nc:]
-    return batch
+        points[row, : len(vertices)], tables[row, :nc, : len(vertices)] = vertices, table
+    entries = np.argwhere((tables > 0).any(-1))
+    return {"table": tables, **vars(describe(points, n_contour, size - n_contour, entries))}

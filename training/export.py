@@ -15,6 +15,10 @@ import onnx
 import onnxruntime
 import torch
 
+from tessera.elements import describe
+from tessera.networks import rings
+from tessera.scheme import join_vertices
+
 from . import configuration
 from .networks import ROLES
 
@@ -23,18 +27,22 @@ INPUTS = {
     "nn2_scores": ["contour", "n_contour", "n_inner", "grid"],
     "nn2_moves": ["contour", "n_contour", "inner", "n_inner"],
     "nn2_star": ["ring", "share"],
-    "nn3": ["contour", "n_contour", "inner", "n_inner", "entries"],
+    "nn3": ["vertices", "following", "facets", "apexes", "elements"],
 }
 AXES = {
+    "contour": {0: "batch", 2: "wrapped"},
     "ring": {1: "wrapped", 2: "batch"},
     "share": {0: "edges", 1: "batch"},
-    "contour": {0: "batch", 1: "edges"},
     "n_contour": {0: "batch"},
     "n_inner": {0: "batch"},
     "l_s": {0: "batch"},
     "grid": {0: "batch", 2: "points"},
     "inner": {0: "batch", 1: "vertices"},
-    "entries": {1: "entries"},
+    "vertices": {0: "vertices"},
+    "following": {0: "vertices"},
+    "facets": {0: "entries"},
+    "apexes": {0: "entries"},
+    "elements": {1: "entries"},
 }
 TOLERANCE = 1e-4
 
@@ -49,19 +57,22 @@ def sample(rng: np.random.Generator, batch: int, edges: int, vertices: int) -> d
     row = rng.integers(0, batch, 50)
     facet = rng.integers(0, n_contour.numpy()[row])
     vertex = np.where(
-        rng.random(50) < 0.5, (facet + 2) % n_contour.numpy()[row], edges + rng.integers(0, n_inner.numpy()[row])
+        rng.random(50) < 0.5, (facet + 2) % n_contour.numpy()[row], (n_contour + rng.integers(0, n_inner)).numpy()[row]
     )
-    entries = np.unique(np.stack([row, facet, vertex]), axis=1)
+    inner = rng.uniform(-0.5, 0.5, (batch, vertices, 2))
+    points = join_vertices(contour, n_contour.numpy(), inner, n_inner.numpy())
+    entries = np.unique(np.stack([row, facet, vertex]), axis=1).T
+    described = describe(points, n_contour.numpy(), n_inner.numpy(), entries)
     return {
         "ring": torch.tensor(np.concatenate([contour[:, -1:], contour, contour[:, :1]], axis=1).T, dtype=torch.float32),
         "share": torch.full((edges, batch), 1 / edges),
-        "contour": torch.tensor(contour, dtype=torch.float32),
+        "contour": torch.tensor(rings(contour, n_contour.numpy(), np.arange(batch), edges)),
         "n_contour": n_contour,
         "n_inner": n_inner,
         "l_s": torch.tensor(rng.uniform(0.3, 1, batch), dtype=torch.float32),
         "grid": torch.tensor(rng.uniform(-1, 1, (batch, 2, 40)), dtype=torch.float32),
-        "inner": torch.tensor(rng.uniform(-0.5, 0.5, (batch, vertices, 2)), dtype=torch.float32),
-        "entries": torch.tensor(entries),
+        "inner": torch.tensor(inner, dtype=torch.float32),
+        **{name: torch.tensor(value) for name, value in vars(described).items()},
     }
 
 
@@ -97,6 +108,7 @@ def export(role: str) -> None:
         dynamic_axes={name: AXES[name] for name in INPUTS[role]},
         opset_version=17,
         dynamo=False,
+        do_constant_folding=False,  # so that weights keep their names, for warm starts (`train.shipped_weights`)
     )
     model = onnx.load(file)
     config = state["config"]

@@ -5,26 +5,23 @@ from __future__ import annotations
 import torch
 from torch import Tensor, nn
 
-from .geometry import SCALES, Outline, closeness, is_real, lower
+from .geometry import SCALES, Outline, closeness, decay, is_real
 
 
 class ContourTokens(nn.Module):
     """Features of contour vertices: both edges, their lengths, the angle, and what is known of the whole; embedded."""
 
-    def __init__(self, width: int, known: int = 1):
+    def __init__(self, width: int, known: int):
         super().__init__()
         self.embed = nn.Linear(8 + known, width)
 
     def forward(self, shape: Outline, known: list[Tensor]) -> Tensor:
-        """known: (B,) each. Returns (B N, W)."""
-        ahead, back = shape.edges, shape.back
-        behind = torch.sqrt((back * back).sum(-1, keepdim=True) + 1e-12)
-        scale = shape.lengths * behind + 1e-6
-        cross = ahead[..., :1] * back[..., 1:] - ahead[..., 1:] * back[..., :1]
-        dot = (ahead * back).sum(-1, keepdim=True)
-        whole = torch.stack(known, -1).unsqueeze(1).expand(-1, ahead.shape[1], -1)
-        features = torch.cat([ahead, back, shape.lengths, behind, cross / scale, dot / scale, whole], -1)
-        return self.embed(features.reshape(-1, features.shape[-1]))
+        """known: (B,) each. Returns (B, N, W)."""
+        (ax, ay, ahead), (bx, by, behind) = shape.ahead, shape.back
+        scale = ahead * behind + 1e-6
+        whole = [value.unsqueeze(1).expand_as(ahead) for value in known]
+        features = [ax, ay, bx, by, ahead, behind, (ax * by - ay * bx) / scale, (ax * bx + ay * by) / scale, *whole]
+        return self.embed(torch.stack(features, -1))
 
 
 class Boundary(nn.Module):
@@ -32,57 +29,86 @@ class Boundary(nn.Module):
 
     def __init__(self, width: int):
         super().__init__()
-        self.embed = nn.Linear(3 * SCALES, width)
+        self.way = nn.Parameter(torch.randn(SCALES, 2, width) / (9 * SCALES) ** 0.5)
+        self.count = nn.Parameter(torch.randn(SCALES, 1, width) / (9 * SCALES) ** 0.5)
+        self.bias = nn.Parameter(torch.zeros(width))
 
-    def forward(self, at: Tensor, lowered: Tensor, shape: Outline) -> Tensor:
-        """Points at (B, n, 2), and their `lower` (B, n, 4). Returns (B n, W)."""
-        batch, n = at.shape[:2]
-        along = lowered @ shape.along.transpose(1, 2)
-        foot = torch.minimum(torch.relu(along), shape.lengths.transpose(1, 2))
-        squared = lowered @ shape.lifted.transpose(1, 2) + foot * (foot - 2 * along)
-        close = torch.cat(closeness(squared), 2).reshape(batch, SCALES * n, -1)
-        feet = torch.cat([foot] * SCALES, 2).reshape(batch, SCALES * n, -1)
-        own = torch.cat([at] * SCALES, 2).reshape(batch, SCALES * n, 2)
-        # Sums over edges of closeness times (start, 1, 1), and of closeness times the way from the start to the foot.
-        sums = close @ torch.cat([shape.contour, torch.ones_like(shape.contour)], -1)
-        ways = (close * feet) @ shape.directions
-        features = torch.cat([sums[..., :2] + ways - sums[..., 2:] * own, sums[..., 3:]], -1)
-        return self.embed(features.reshape(-1, 3 * SCALES))
+    def forward(self, lowered: Tensor, shape: Outline) -> Tensor:
+        """Points by their `lower` (B, n, 4). Returns (B, n, W)."""
+        along = lowered @ shape.along
+        foot = torch.minimum(torch.relu(along), shape.ahead[2].unsqueeze(1))
+        # Sums over edges of closeness times the foot's place, and of closeness.
+        sums = [
+            torch.cat([close, close * foot], 2) @ shape.feet
+            for close in closeness(lowered @ shape.lifted + foot * (foot - 2 * along))
+        ]
+        own = torch.cat([lowered[..., :2]] * SCALES, 2) * torch.cat([each[..., 2:] for each in sums], 2)
+        # Ways are from the point itself, of which `lower` has -2 times.
+        ways = torch.cat([self.way, self.count, torch.zeros_like(self.count)], 1)
+        embed = torch.cat([ways.flatten(0, 1), 0.5 * self.way.flatten(0, 1)])
+        return torch.cat([*sums, own], 2) @ embed + self.bias
 
 
 class Attention(nn.Module):
     """Vertices look at vertices, each head at a scale of its own, and take values and the mean way to what they see."""
 
-    def __init__(self, width: int, heads: int = 4, hidden: int = 48, size: int = 8):
+    def __init__(self, width: int, heads: int = 4, hidden: int = 64, size: int = 12):
         super().__init__()
-        self.heads, self.size = heads, size
+        self.size = size
         self.before = nn.LayerNorm(width)
-        self.query = nn.Linear(width, heads * size)
-        self.key = nn.Linear(width, heads * size, bias=False)
-        self.value = nn.Linear(width, heads * size, bias=False)
+        self.query, self.key = (nn.Parameter(torch.randn(heads, width, size) / (3 * width) ** 0.5) for _ in range(2))
+        self.value = nn.Parameter(torch.randn(heads, width, size + 1) / (3 * width) ** 0.5)
         self.rates = nn.Parameter(torch.linspace(-2, 0.7, heads))  # logarithms, per squared unit
-        self.first = nn.Linear(width + heads * (size + 2), hidden)
-        self.second = nn.Linear(hidden, width)
+        self.heard = nn.Parameter(torch.randn(heads, size + 1, hidden) / (3 * (width + heads * size)) ** 0.5)
+        self.way = nn.Parameter(torch.randn(heads, 2, hidden) / (3 * (width + heads * size)) ** 0.5)
+        self.first, self.second = nn.Linear(width, hidden), nn.Linear(hidden, width)
+        # From `lower`, (-2 x, -2 y, 1, x² + y²), to `lift`, (x, y, x² + y², 1).
+        lifted = torch.tensor([[-0.5, 0, 0, 0], [0, -0.5, 0, 0], [0, 0, 0, 1], [0, 0, 1, 0]]).expand(heads, 4, 4)
+        self.register_buffer("lifted", lifted, persistent=False)
+        # What adds up each head's last value, 1, beside all its values.
+        last = torch.zeros(size + 4, size + 4)
+        last[-1] = 1
+        self.register_buffer("sums", torch.block_diag(*[last] * heads), persistent=False)
 
-    def forward(self, x: Tensor, others: Tensor | None, squared: Tensor, at: Tensor, places: Tensor) -> Tensor:
-        """Vertices x (B n, W) at (B, n, 2) look at others (B, m, W), if any, and at each other.
+    def forward(self, x: Tensor, lowered: Tensor, others: Tensor | None) -> Tensor:
+        """Vertices x (B, n, W) look at others (B, m, W + 4), if any, and at each other. Returns (B, n, W).
 
-        squared: (B, n, S) distances to the places (B, S, 2) of the others and of x itself. Returns (B n, W).
+        lowered: (B, n, 4), their places; those of the others are the last four of each. A softmax, in which the squared
+        distance is a part of the product of query and key, and the sum over all that is seen a value like others.
         """
-        batch, n = at.shape[:2]
-        heads, seen = self.heads, places.shape[1]
-        z = self.before(x)
-        y = z if others is None else torch.cat([others, z.reshape(batch, n, -1)], 1).reshape(batch * seen, -1)
-        query = self.query(z).reshape(batch, n, heads, self.size).transpose(1, 2)
-        key = self.key(y).reshape(batch, seen, heads, self.size).permute(0, 2, 3, 1)
-        value = self.value(y).reshape(batch, seen, heads, self.size).transpose(1, 2)
-        distance = torch.exp(self.rates).reshape(1, heads, 1, 1) * squared.unsqueeze(1)
-        weights = torch.softmax(query @ key - distance, -1)
-        heard = (weights @ value).transpose(1, 2).reshape(batch * n, -1)
-        mean = (weights.reshape(batch, heads * n, seen) @ places).reshape(batch, heads, n, 2).transpose(1, 2)
-        ways = mean.reshape(batch, n, -1) - torch.cat([at] * heads, 2)
-        heard = torch.cat([z, heard, ways.reshape(batch * n, -1)], -1)
-        return x + self.second(torch.relu(self.first(heard)))
+        own = torch.cat([self.before(x), lowered], 2)
+        seen = own if others is None else torch.cat([others, own], 1)
+        heads = [
+            decay((own @ query) @ (seen @ key).transpose(1, 2)) @ (seen @ value)
+            for query, key, value in zip(*self.matrices(), strict=True)
+        ]
+        heard = torch.cat(heads, 2)
+        hidden = torch.cat([own, heard / (heard @ self.sums)], 2) @ self.to_hidden() + self.first.bias
+        return x + self.second(torch.relu(hidden))
+
+    def matrices(self) -> tuple[Tensor, Tensor, Tensor]:
+        """(heads, W + 4, size + 4) of queries, keys and values of vertices and their `lower`.
+
+        The products of the last four of query and key are -rate d². Values end with x, y and 1.
+        """
+        rate = torch.exp(self.rates).reshape(-1, 1, 1)
+        lowered = -rate * torch.eye(4, device=rate.device)
+        values = torch.cat([self.lifted[..., :2], self.lifted[..., 3:]], 2)
+        return tuple(map(_beside, (self.query, self.key, self.value), (lowered, self.lifted, values)))
+
+    def to_hidden(self) -> Tensor:
+        """(W + 4 + heads (size + 4), H) from a vertex, its `lower`, and what it has heard."""
+        # Ways are from the vertex's own place, of which `lower` has -2 times.
+        own = 0.5 * self.way.sum(0)
+        heard = torch.cat([self.heard, self.way, torch.zeros_like(self.way[:, :1])], 1).flatten(0, 1)
+        return torch.cat([self.first.weight.T, own, torch.zeros_like(own), heard])
+
+
+def _beside(learnt: Tensor, fixed: Tensor) -> Tensor:
+    """Matrices (h, a, b) and (h, c, d) as blocks of (h, a + c, b + d)."""
+    above = torch.cat([learnt, torch.zeros_like(learnt[..., :1]).expand(-1, -1, fixed.shape[2])], 2)
+    below = torch.cat([torch.zeros_like(fixed[..., :1]).expand(-1, -1, learnt.shape[2]), fixed], 2)
+    return torch.cat([above, below], 1)
 
 
 class Encoder(nn.Module):
@@ -95,16 +121,14 @@ class Encoder(nn.Module):
         self.after = nn.LayerNorm(width)
 
     def forward(self, shape: Outline, known: list[Tensor]) -> Tensor:
-        """Returns (B, N, W)."""
-        at, lowered = shape.contour, lower(shape.contour)
-        x = self.tokens(shape, known) + self.boundary(at, lowered, shape)
-        squared = lowered @ shape.lifted.transpose(1, 2)
+        """known: (B,) each. Returns (B, N, W)."""
+        x = self.tokens(shape, known) + self.boundary(shape.lowered, shape)
         for layer in self.layers:
-            x = layer(x, None, squared, at, at)
-        return self.after(x).reshape(*at.shape[:2], -1)
+            x = layer(x, shape.lowered, None)
+        return self.after(x)
 
 
 def mean_token(x: Tensor, n_contour: Tensor) -> Tensor:
-    """(B, W) mean over the real ones of the tokens (B, N, W)."""
+    """(B, 1, W) mean over the real ones of the tokens (B, N, W)."""
     real = is_real(n_contour, x.shape[1])
-    return ((real / real.sum(1, keepdim=True)).unsqueeze(1) @ x)[:, 0]
+    return (real / n_contour.float().unsqueeze(1)).unsqueeze(1) @ x

@@ -6,6 +6,7 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
+from tessera.networks import rings
 from tessera.placement import MOST_INNER
 from tessera.scheme import LARGEST_CONTOUR
 
@@ -25,6 +26,12 @@ def tensor(array: np.ndarray) -> Tensor:
     return torch.as_tensor(np.ascontiguousarray(array), dtype=kind, device=DEVICE)
 
 
+def contour_of(batch: dict[str, np.ndarray]) -> Tensor:
+    """A batch's contours as the networks take them, rings (n, 2, N + 2)."""
+    contour, n_contour = batch["contour"], batch["n_contour"]
+    return tensor(rings(contour, n_contour, np.arange(len(contour)), contour.shape[1]))
+
+
 def quality(a: Tensor, b: Tensor, c: Tensor) -> Tensor:
     """Element quality of triangles (..., 2), negative where inverted."""
     squares = sum((u - v).pow(2).sum(-1) for u, v in ((a, b), (b, c), (c, a)))
@@ -40,7 +47,7 @@ def count_inputs(rng: np.random.Generator, examples: Examples) -> dict[str, np.n
 
 def count_loss(net: nn.Module, batch: dict[str, np.ndarray]) -> Tensor:
     """Mean absolute error of the number of inner vertices (section 2.3)."""
-    count = net(tensor(batch["contour"]), tensor(batch["n_contour"]), tensor(batch["l_s"]))
+    count = net(contour_of(batch), tensor(batch["n_contour"]), tensor(batch["l_s"]))
     return (count - tensor(batch["n_inner"])).abs().mean()
 
 
@@ -53,7 +60,7 @@ def score_inputs(rng: np.random.Generator, examples: Examples) -> dict[str, np.n
 
 def score_loss(net: nn.Module, batch: dict[str, np.ndarray]) -> Tensor:
     """Squared error of the scores of points over the cavity (section 2.4), linear beyond 0.3 even lengths."""
-    found = net(*(tensor(batch[name]) for name in ("contour", "n_contour", "n_inner", "grid")))
+    found = net(contour_of(batch), *(tensor(batch[name]) for name in ("n_contour", "n_inner", "grid")))
     error = nn.functional.huber_loss(found, tensor(batch["scores"]), reduction="none", delta=0.3)
     counts = tensor(batch["counts"])
     return (error * counts).sum() / counts.sum()
@@ -76,7 +83,7 @@ def move_loss(net: nn.Module, batch: dict[str, np.ndarray]) -> Tensor:
     elements, ok = np.empty((len(given), _MOST_ELEMENTS, 3), np.int64), np.zeros(len(given), bool)
     contour, n_contour, n_inner = (tensor(batch[name]) for name in ("contour", "n_contour", "n_inner"))
     total = 0 * next(net.parameters()).sum()
-    passes = net.trajectory(contour, n_contour, tensor(given), n_inner)
+    passes = net.trajectory(contour_of(batch), n_contour, tensor(given), n_inner)
     for number, moved in enumerate(passes, 1):
         elements_of(batch["contour"], given, batch["n_contour"], batch["n_inner"], elements, ok)
         if not ok.any():  # an untrained network may have moved all of a small batch out of their contours
@@ -91,7 +98,7 @@ def move_loss(net: nn.Module, batch: dict[str, np.ndarray]) -> Tensor:
 def mesh_energy(at: Tensor, elements: Tensor) -> Tensor:
     """Mean over meshes of what is missing to perfect elements, the worst and the mean.
 
-    The worst softly, as (1/4) log of the mean of q^-4, finite where inverted; the mean shortfall is added.
+    The worst softly, as (1/4) log of the mean of q^-4, finite where inverted; the mean shortfall is added twice.
     """
     index = elements.clamp(min=0).reshape(len(elements), -1, 1).expand(-1, -1, 2)
     a, b, c = torch.gather(at, 1, index).reshape(*elements.shape, 2).unbind(2)
@@ -99,7 +106,7 @@ def mesh_energy(at: Tensor, elements: Tensor) -> Tensor:
     real = (elements[..., 0] >= 0).float()
     energy = torch.where(q > 0.1, q.clamp(min=0.1) ** -4, 1e4 + 4e5 * (0.1 - q))
     worst = 0.25 * torch.log((energy * real).sum(1) / real.sum(1))
-    return (worst.clamp(max=4) + ((1 - q) * real).sum(1) / real.sum(1)).mean()
+    return (worst.clamp(max=4) + 2 * ((1 - q) * real).sum(1) / real.sum(1)).mean()
 
 
 def connection_loss(net: nn.Module, batch: dict[str, np.ndarray]) -> Tensor:
@@ -107,16 +114,15 @@ def connection_loss(net: nn.Module, batch: dict[str, np.ndarray]) -> Tensor:
 
     Near ties decide the mean quality, and differ by less than the error of an entry: so choices are compared twice.
     """
-    batch = {name: tensor(array) for name, array in batch.items()}
-    table, possible = batch["table"], (batch["table"] > 0).any(-1)
-    entries = possible.nonzero()
-    out = net(batch["contour"], batch["n_contour"], batch["inner"], batch["n_inner"], entries.T)
+    described = {name: tensor(array) for name, array in batch.items()}
+    table = described.pop("table")
+    possible, own = (table > 0).any(-1), described["elements"][0]
+    out = net(**described)
     loss = (out - table[possible]).pow(2).sum(-1).mean()
-    own = element_qualities(batch, entries)
     choices = possible.sum(-1) > 1
 
     def rank(entry: Tensor, sharpness: float) -> Tensor:
-        """What the triangulation orders the possible entries (P, 2) by; the others far below: (n, N, N + M)."""
+        """What the triangulation orders the possible entries (P, 2) by; the others far below: (n, N, V)."""
         value = torch.minimum(entry[:, 0], own) + entry[:, 1]
         return torch.full(possible.shape, -1e4, device=DEVICE).masked_scatter(possible, sharpness * value)
 
@@ -125,15 +131,6 @@ def connection_loss(net: nn.Module, batch: dict[str, np.ndarray]) -> Tensor:
         divergence = -(wanted * torch.log_softmax(rank(out, sharpness), -1)).sum(-1)
         loss = loss + 0.2 * divergence[choices].mean()
     return loss
-
-
-def element_qualities(batch: dict[str, Tensor], entries: Tensor) -> Tensor:
-    """(P,) quality of the element that each entry (P, 3) of a table asks for."""
-    row, first, third = entries.unbind(1)
-    at = torch.cat([batch["contour"], batch["inner"]], 1)
-    second = torch.where(first + 1 < batch["n_contour"][row], first + 1, 0)
-    a, b, c = at[row, first], at[row, second], at[row, third]
-    return quality(a, b, c)
 
 
 INPUTS = {"nn1": count_inputs, "nn2_scores": score_inputs, "nn2_moves": move_inputs, "nn3": table_batch}

@@ -1,8 +1,9 @@
 """The three roles' networks: one a role, for every N_C and N_I, padded and masked.
 
-All take transformed contours: ``contour`` (B, N, 2) float32 counter-clockwise with ``n_contour`` (B,) int64 vertices
-each, the rest padding. Nothing depends on the order of the inner vertices nor on where the contour starts. Lengths are
-in units of the target (NN1) or of the even edge length, so that nothing depends on the size either.
+NN1 and NN2 take transformed contours as rings: ``contour`` (B, 2, N + 2) float32, x and y, counter-clockwise: the last
+of ``n_contour`` (B,) int64 vertices before the first, the first after the last, then padding. Nothing depends on the
+order of the inner vertices nor on where the contour starts. Lengths are in units of the target (NN1) or of the even
+edge length, so that nothing depends on the size either.
 """
 
 from __future__ import annotations
@@ -10,25 +11,28 @@ from __future__ import annotations
 import torch
 from torch import Tensor, nn
 
-from .geometry import Outline, area, closeness, even_length, in_units, is_real, lift, lower, neighbours, outline
-from .layers import Attention, Boundary, ContourTokens, Encoder, mean_token
+from .geometry import AWAY, Outline, area, closeness, even_length, is_real, lower, outline
+from .layers import Attention, Boundary, Encoder, mean_token
+
+PAIRS = 4  # ways in which a grid point hears an edge
 
 
 class NN1(nn.Module):
     """How many inner vertices: (contour, n_contour, l_s) -> (B,) a real number near N_I."""
 
-    def __init__(self, width: int = 32):
+    def __init__(self, width: int = 32, layers: int = 1):
         super().__init__()
-        self.encoder = Encoder(width, 2, layers=2)
+        self.encoder = Encoder(width, 2, layers)
         self.head = nn.Sequential(nn.Linear(width, width), nn.ReLU(), nn.Linear(width, 2))
 
     def forward(self, contour: Tensor, n_contour: Tensor, l_s: Tensor) -> Tensor:
         """Returns (B,)."""
-        x = self.encoder(outline(contour, n_contour, l_s), [n_contour.float() / 16, l_s])
+        shape, edges = outline(contour, n_contour, l_s), n_contour.float()
+        x = self.encoder(shape, [edges / 16, l_s])
         ratio, rest = self.head(mean_token(x, n_contour)).unbind(-1)
         # Elements of the target size that the area would hold: most of the answer, so the network learns the departure.
         elements = area(contour, n_contour) / (3**0.5 / 4 * l_s * l_s)
-        return torch.relu((elements - n_contour.float() + 2) / 2 * (1 + ratio) + 4 * rest)
+        return torch.relu((elements - edges + 2) / 2 * (1 + ratio[:, 0]) + 4 * rest[:, 0])
 
 
 class Scores(nn.Module):
@@ -36,9 +40,8 @@ class Scores(nn.Module):
 
     def __init__(self, width: int = 32, narrow: int = 24):
         super().__init__()
-        self.encoder = Encoder(width, 3, layers=1)
-        self.narrow = narrow
-        self.value = nn.Linear(width, 5 * narrow)
+        self.encoder = Encoder(width, 3, layers=0)
+        self.value = nn.Linear(width, PAIRS * narrow)
         self.whole = nn.Linear(width, narrow)
         self.second = nn.Parameter(torch.randn(narrow, narrow) / narrow**0.5)
         self.second_bias = nn.Parameter(torch.zeros(narrow, 1))
@@ -53,14 +56,14 @@ class Scores(nn.Module):
         at = grid / even.reshape(-1, 1, 1)
         square = at[:, :1] * at[:, :1] + at[:, 1:] * at[:, 1:]
         lowered = torch.cat([at * -2, torch.ones_like(square), square], 1)
-        along = shape.along @ lowered
-        foot = torch.minimum(torch.relu(along), shape.lengths)
+        along = shape.along.transpose(1, 2) @ lowered
+        foot = torch.minimum(torch.relu(along), shape.ahead[2].unsqueeze(2))
         # Grid points look further than vertices: their rates are smaller.
-        wide, middle, narrow = closeness(0.4 * (shape.lifted @ lowered + foot * (foot - 2 * along)))
-        pairs = [wide, middle, narrow, wide * foot, middle * foot]  # (B, N, M) each
-        pairs = torch.cat([pair.unsqueeze(2) for pair in pairs], 2).flatten(1, 2)
-        value = self.value(x).reshape(x.shape[0], -1, self.narrow)
-        y = torch.relu(value.transpose(1, 2) @ pairs + self.whole(mean_token(x, n_contour)).unsqueeze(2))
+        wide, middle, narrow = closeness(0.4 * (shape.lifted.transpose(1, 2) @ lowered + foot * (foot - 2 * along)))
+        pairs = torch.cat([wide, middle, narrow, middle * foot], 1)  # (B, N, M) each
+        values = torch.cat(self.value(x).chunk(PAIRS, 2), 1)
+        whole = self.whole(mean_token(x, n_contour)).transpose(1, 2)
+        y = torch.relu(values.transpose(1, 2) @ pairs + whole)
         y = torch.relu(self.second @ y + self.second_bias)
         return (self.third @ y)[:, 0] + self.third_bias
 
@@ -71,21 +74,23 @@ class Pass(nn.Module):
     def __init__(self, width: int):
         super().__init__()
         self.boundary, self.look = Boundary(width), Attention(width)
-        self.after, self.head = nn.LayerNorm(width), nn.Linear(width, 2)
+        self.head = nn.Linear(width, 2)
 
-    def forward(self, x: Tensor, at: Tensor, contour: Tensor, shape: Outline) -> tuple[Tensor, Tensor]:
-        """x (B M, W): what the vertices at (B, M, 2) know; contour (B, N, W) tokens. Returns both anew."""
-        lowered, places = lower(at), torch.cat([shape.contour, at], 1)
-        squared = lowered @ torch.cat([shape.lifted, lift(at)], 1).transpose(1, 2)
-        x = x + self.boundary(at, lowered, shape)
-        x = self.look(x, contour, squared, at, places)
-        return x, at + self.head(self.after(x)).reshape(at.shape)
+    def forward(
+        self, x: Tensor, at: tuple[Tensor, Tensor], contour: Tensor, shape: Outline
+    ) -> tuple[Tensor, tuple[Tensor, Tensor]]:
+        """x (B, M, W): what the vertices at (B, M), x and y, know; contour (B, N, W + 4). Returns both anew."""
+        lowered = lower(*at)
+        x = x + self.boundary(lowered, shape)
+        x = self.look(x, lowered, contour)
+        step_x, step_y = self.head(x).unbind(-1)
+        return x, (at[0] + step_x, at[1] + step_y)
 
 
 class Moves(nn.Module):
     """NN2 again: new places of inner vertices that are all seen at once. (B, M, 2)."""
 
-    def __init__(self, width: int = 32, passes: int = 4):
+    def __init__(self, width: int = 32, passes: int = 3):
         super().__init__()
         self.encoder = Encoder(width, 2, layers=0)
         self.start = nn.Linear(2, width)
@@ -98,14 +103,17 @@ class Moves(nn.Module):
     def trajectory(self, contour: Tensor, n_contour: Tensor, inner: Tensor, n_inner: Tensor) -> list[Tensor]:
         """Places (B, M, 2) after each of the passes."""
         even, count = even_length(contour, n_contour, n_inner), n_inner.float()
-        shape, at = outline(contour, n_contour, even), in_units(inner, n_inner, even)
-        tokens = self.encoder(shape, [n_contour.float() / 16, 1 / (1 + count)])
-        known = torch.stack([count / 16, 1 / (1 + count)], -1).unsqueeze(1).expand(-1, inner.shape[1], -1)
-        x = self.start(known.reshape(-1, 2))
+        shape, real = outline(contour, n_contour, even), is_real(n_inner, inner.shape[1])
+        known = 1 / (1 + count)
+        tokens = self.encoder(shape, [n_contour.float() / 16, known])
+        tokens = torch.cat([tokens, shape.lowered], 2)
+        scale, away = real / even.unsqueeze(1), (1 - real) * AWAY
+        at = inner[..., 0] * scale + away, inner[..., 1] * scale + away
+        x = self.start(torch.stack([count / 16, known], -1)).unsqueeze(1)
         places = []
         for step in self.passes:
             x, at = step(x, at, tokens, shape)
-            places.append(at * even.reshape(-1, 1, 1))
+            places.append(torch.stack(at, -1) * even.reshape(-1, 1, 1))
         return places
 
 
@@ -160,54 +168,20 @@ def star_features(ring: Tensor) -> Tensor:
 
 
 class NN3(nn.Module):
-    """How to connect: (q_worst, q_mean) of entries of the connection table."""
+    """How to connect: (q_worst, q_mean) of entries of connection tables, as `tessera.elements` describes them."""
 
     def __init__(self, width: int = 32, narrow: int = 16):
         super().__init__()
-        self.tokens = ContourTokens(width)
+        self.tokens = nn.Linear(5, width)
         self.start, self.end, self.apex = (nn.Linear(width, narrow, bias=False) for _ in range(3))
         self.element = nn.Linear(8, narrow)
         self.head = nn.Sequential(nn.ReLU(), nn.Linear(narrow, narrow), nn.ReLU(), nn.Linear(narrow, 2))
 
-    def forward(self, contour: Tensor, n_contour: Tensor, inner: Tensor, n_inner: Tensor, entries: Tensor) -> Tensor:
-        """entries: (3, P) int64, an example, a contour edge of it and a vertex (inner ones from N on). Returns (P, 2).
-
-        Only entries whose element is possible are asked for: visibility is theirs by being in the list.
-        """
-        even, (batch, n) = even_length(contour, n_contour, n_inner), contour.shape[:2]
-        shape = outline(contour, n_contour, even)
-        tokens = torch.relu(self.tokens(shape, [n_contour.float() / 16]))
-        following, _ = neighbours(self.end(tokens).reshape(batch, n, -1), n_contour)
-        facets = self.start(tokens) + following.reshape(batch * n, -1)
-        inside = torch.zeros_like(inner[..., :1]).expand(-1, -1, facets.shape[1])
-        vertices = torch.cat([self.apex(tokens).reshape(batch, n, -1), inside], 1)
-        at = torch.cat([shape.contour, in_units(inner, n_inner, even)], 1)
-        example, edge, vertex = entries.unbind(0)
-        facet, apex = example * n + edge, example * at.shape[1] + vertex
-        elements = self.element(element_features(shape, at, facet, apex, vertex))
-        return self.head(facets[facet] + vertices.reshape(-1, facets.shape[1])[apex] + elements)
-
-
-def element_features(shape: Outline, at: Tensor, facet: Tensor, apex: Tensor, vertex: Tensor) -> Tensor:
-    """(P, 8) of the elements asked for: quality, sides, how blunt the apex is, and the best of the facet beside it.
-
-    The cotangent at the apex is the facet's smallest in the constrained Delaunay triangulation.
-    """
-    known = torch.cat([shape.contour, shape.edges, shape.lengths], -1).reshape(-1, 5)[facet]
-    x, y, ahead_x, ahead_y, base = known.unbind(1)
-    to_x, to_y = at.reshape(-1, 2)[apex].unbind(1)
-    ux, uy = to_x - x, to_y - y
-    wx, wy = ux - ahead_x, uy - ahead_y
-    a, b, c = ux * ux + uy * uy, wx * wx + wy * wy, base * base
-    twice = ahead_x * uy - ahead_y * ux
-    quality = 2 * 3**0.5 * twice / (a + b + c + 1e-9)
-    cotangent = ((ux * wx + uy * wy) / twice.clamp(min=1e-4)).clamp(-20, 20)
-    own = torch.stack([cotangent, -quality], -1)
-    table = torch.full((shape.contour.shape[0] * shape.contour.shape[1], at.shape[1], 2), 30.0, device=at.device)
-    beside = own - table.index_put((facet, vertex), own).amin(1)[facet]
-    sides = torch.sqrt(torch.stack([a, b, c], -1) + 1e-9)
-    shapes = torch.stack([quality, quality * quality], -1)
-    return torch.cat([shapes, torch.cat([sides, own[:, :1], beside], -1).clamp(-4, 5)], -1)
+    def forward(self, vertices: Tensor, following: Tensor, facets: Tensor, apexes: Tensor, elements: Tensor) -> Tensor:
+        """Returns (P, 2). Only possible elements are asked for: visibility is theirs by being in the list."""
+        tokens = torch.relu(self.tokens(vertices))
+        sides = self.start(tokens) + self.end(tokens)[following]
+        return self.head(sides[facets] + self.apex(tokens)[apexes] + self.element(elements.T))
 
 
 ROLES = {"nn1": NN1, "nn2_scores": Scores, "nn2_moves": Moves, "nn2_star": Star, "nn3": NN3}

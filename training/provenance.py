@@ -6,7 +6,7 @@ import hashlib
 import subprocess
 from pathlib import Path
 
-from tessera import networks
+from tessera.runtime import MODELS
 
 from . import configuration
 
@@ -28,7 +28,7 @@ def data_fingerprint() -> str:
 
 def network_hashes() -> dict[str, str]:
     """Of the networks that the library uses, by file."""
-    return {file.name: fingerprint(file) for file in sorted(networks.FOLDER.glob("*.onnx"))}
+    return {file.name: fingerprint(file) for file in sorted(MODELS.glob("*.onnx"))}
 
 
 def code_version() -> str:

@@ -1,7 +1,8 @@
 """Train one role: ``python -m training.train ROLE``, where ROLE is nn1, nn2_scores, nn2_moves or nn3.
 
 Reads from top to bottom: batches, validation, checkpoint, loop. A run that was killed goes on from its checkpoint
-(``runs/ROLE.pt``), which holds the whole configuration; ``--warm`` starts a new schedule from those weights.
+(``runs/ROLE.pt``), which holds the whole configuration; ``--warm`` starts a new schedule from those weights, or from
+those that ship where there is no checkpoint.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
+import onnx
 import torch
 from tqdm import tqdm
 
@@ -70,6 +72,13 @@ def save(file: Path, state: dict) -> None:
     unfinished.rename(file)
 
 
+def shipped_weights(role: str) -> dict[str, torch.Tensor]:
+    """The weights of the exported network, by the framework's names."""
+    model = onnx.load(configuration.ROOT / "onnx_models" / f"{role}.onnx")
+    arrays = {weight.name: onnx.numpy_helper.to_array(weight) for weight in model.graph.initializer}
+    return {name: torch.tensor(arrays[name]) for name in ROLES[role]().state_dict()}
+
+
 def train(role: str, settings: dict, steps: int, warm: bool, config: dict) -> None:
     """Run the schedule from the checkpoint, if there is one, to its end."""
     batch_at, held_out = batches(role, load("train"), settings), validation_batches(role)
@@ -86,6 +95,9 @@ def train(role: str, settings: dict, steps: int, warm: bool, config: dict) -> No
         if not warm:
             optimiser.load_state_dict(state["optimiser"])
             start = state["step"]
+    elif warm:
+        net.load_state_dict(shipped_weights(role))
+        average.load_state_dict(net.state_dict())
     source = {"config": config, "data": data_fingerprint(), "code": code_version()}
     losses, saved = [], time.monotonic()
     for step in tqdm(range(start, steps), initial=start, total=steps, mininterval=10):
@@ -118,7 +130,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("role", choices=LOSSES)
     parser.add_argument("--steps", type=int, help="length of the schedule (default: the configuration's)")
-    parser.add_argument("--warm", action="store_true", help="a new schedule from the checkpoint's weights")
+    parser.add_argument("--warm", action="store_true", help="a new schedule from known weights")
     arguments = parser.parse_args()
     config = configuration.read()
     settings = config["train"] | config["train"].get(arguments.role, {})

@@ -40,7 +40,7 @@ def distances_to_contour(points: np.ndarray, contour: np.ndarray, n_contour: np.
     """(B, M) distance of points (B, M, 2) to the closest edge of their contour."""
     x, y, (ax, ay), (bx, by) = _points_and_edges(points, contour, n_contour)
     ex, ey, px, py = bx - ax, by - ay, x - ax, y - ay
-    along = np.clip((px * ex + py * ey) / np.maximum(ex * ex + ey * ey, 1e-300), 0, 1)
+    along = np.clip((px * ex + py * ey) / np.maximum(ex * ex + ey * ey, np.finfo(ex.dtype).tiny), 0, 1)
     px -= along * ex
     py -= along * ey
     square = px * px + py * py

@@ -40,21 +40,27 @@ def close(contours: Contours) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def _best(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The best triangulations (b, n - 2, 3) of polygons (b, n, 2), and whether they have one (b,)."""
     triples, members = _triangulations(points.shape[1])
-    corners = points[:, triples]
-    valid = (orientation(*np.moveaxis(corners, 2, 0)) > 0)[:, members].all(axis=2)
-    q = quality(*np.moveaxis(np.ascontiguousarray(corners).view(np.complex128)[..., 0], 2, 0))[:, members]
-    score = np.where(valid, q.min(axis=2) + q.mean(axis=2), 0)
+    corners = points.swapaxes(0, 1)[triples.T]
+    # Polygons are the last axis: sums over the few triangles of each triangulation are then additions of long rows.
+    q = quality(*np.ascontiguousarray(corners).view(np.complex128)[..., 0])
+    q = np.where(orientation(*corners) > 0, q, -1)
+    worst = mean = q[members[0]]
+    for number in members[1:]:
+        own = q[number]
+        worst, mean = np.minimum(worst, own), mean + own
+    valid = worst >= 0
+    score = np.where(valid, worst + mean / len(members), 0)
     # In whole numbers, so that rounding rarely decides between equals: the first one is theirs. Beside the best one, so
     # that flat triangulations are told apart too.
-    size = np.maximum(score.max(axis=1, keepdims=True), np.finfo(float).tiny)
+    size = np.maximum(score.max(axis=0), np.finfo(float).tiny)
     score = np.where(valid, (score / size * 2**BITS).astype(np.int64), -1)
-    best = score.argmax(axis=1)
-    return triples[members[best]], valid.any(axis=1)
+    best = score.argmax(axis=0)
+    return triples[members.T[best]], valid.any(axis=0)
 
 
 @cache
 def _triangulations(n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Triangles of n corners (k, 3), and the triangulations of an n-gon as their numbers (c, n - 2)."""
+    """Triangles of n corners (k, 3), and the triangulations of an n-gon as their numbers (n - 2, c)."""
     triples = list(combinations(range(n), 3))
 
     def of(corners: tuple[int, ...]) -> list[list[tuple[int, ...]]]:
@@ -69,4 +75,4 @@ def _triangulations(n: int) -> tuple[np.ndarray, np.ndarray]:
             for right in of((first, *corners[k:]))
         ]
 
-    return np.array(triples), np.array([sorted(map(triples.index, found)) for found in of(tuple(range(n)))])
+    return np.array(triples), np.array([sorted(map(triples.index, found)) for found in of(tuple(range(n)))]).T.copy()

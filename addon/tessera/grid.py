@@ -67,25 +67,23 @@ def make_grids(contour: np.ndarray, n_contour: np.ndarray, margin: np.ndarray, r
 def _squared_distances(start: np.ndarray, end: np.ndarray, resolution: int) -> np.ndarray:
     """(B, R²) squared distances of grid points to the closest of the edges from start to end (B, N, 2).
 
-    Element by element: a product of matrices may round differently from one size of batch to another.
+    Element by element: a product of matrices may round differently from one size of batch to another. What depends on
+    a point's column alone, or on its row, is (B, N, R), and added where it is wanted.
     """
-    y, x = (value.ravel() for value in np.meshgrid(steps(resolution), steps(resolution), indexing="ij"))
     edge = end - start
     length = np.sqrt((edge * edge).sum(axis=-1, keepdims=True))
     unit = edge / np.maximum(length, np.float32(1e-30))
-    away, rise = x - start[..., :1], y - start[..., 1:]
-    along = away * unit[..., :1]
-    along += rise * unit[..., 1:]
-    foot = np.minimum(np.maximum(along, np.float32(0)), length)
+    away, rise = steps(resolution) - start[..., :1], steps(resolution) - start[..., 1:]
+    along = (away * unit[..., :1])[:, :, None] + (rise * unit[..., 1:])[..., None]
+    foot = np.maximum(along, np.float32(0))
+    np.minimum(foot, length[..., None], out=foot)
     # |point - start|² + foot (foot - 2 along)
     along *= np.float32(-2)
     along += foot
     along *= foot
-    away *= away
-    rise *= rise
-    away += rise
-    away += along
-    return away.min(axis=1)
+    along += (away * away)[:, :, None]
+    along += (rise * rise)[..., None]
+    return along.min(axis=1).reshape(len(start), -1)
 
 
 def _is_inside(start: np.ndarray, end: np.ndarray, resolution: int) -> np.ndarray:

@@ -1,8 +1,8 @@
 """The networks: one ONNX session a role, and one function a role.
 
-All functions take transformed contours, (B, N, 2) with ``n_contour`` (B,) vertices each and padding after them.
-Contours of like size go through a network together; the size they are padded to depends on each contour alone, never
-on its neighbours in the batch, so that a contour's answer is the same in every batch.
+NN1 and NN2 take transformed contours, (B, N, 2) with ``n_contour`` (B,) vertices each and padding after them. Contours
+of like size go through a network together; the size they are padded to depends on each contour alone, never on its
+neighbours in the batch, so that a contour's answer is the same in every batch.
 """
 
 from __future__ import annotations
@@ -11,17 +11,15 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .runtime import open_session
+from .elements import describe
+from .runtime import MODELS, open_session
 
 if TYPE_CHECKING:
     import onnxruntime
-
-FOLDER = Path(__file__).resolve().parents[2] / "onnx_models"
 
 # Sizes that contours, inner vertices and grids are padded to.
 _PADDED_EDGES = np.array([4, 8, 12, 16, 24, 32, 48, 64])
@@ -29,8 +27,9 @@ _PADDED_INNER = np.array([2, 4, 8, 12, 16, 24, 32])
 _PADDED_GRID = np.array([16, 32, 48, 64, 96, 128, 192, 256, 400, 48 * 48])
 _MOST = 1e9  # inner vertices that NN1 may ask for
 _KNOWN_TARGETS = 0.25, 20.0  # scaled target edge lengths that NN1 is asked about; it has learnt from 0.25 on
-# Points in one call, so that what a network holds at a time stays in the processor's cache.
+# Points in one call, and entries, so that what a network holds at a time stays in the processor's cache.
 _CALL_SIZE = 1 << 12
+_CALL_ENTRIES = 1 << 14
 
 
 @dataclass(frozen=True)
@@ -62,7 +61,7 @@ def session(role: str) -> onnxruntime.InferenceSession:
 
     Raises RuntimeProblem.
     """
-    return open_session(FOLDER / f"{role}.onnx", _execution.threads, _execution.provider)
+    return open_session(MODELS / f"{role}.onnx", _execution.threads, _execution.provider)
 
 
 def count_inner_vertices(contour: np.ndarray, n_contour: np.ndarray, l_s: np.ndarray) -> np.ndarray:
@@ -72,7 +71,7 @@ def count_inner_vertices(contour: np.ndarray, n_contour: np.ndarray, l_s: np.nda
         (count[rows],) = session("nn1").run(
             None,
             {
-                "contour": _single(contour, rows, n),
+                "contour": rings(contour, n_contour, rows, n),
                 "n_contour": n_contour[rows],
                 "l_s": known[rows].astype(np.float32),
             },
@@ -102,7 +101,7 @@ def score_grid(
         (out,) = session("nn2_scores").run(
             None,
             {
-                "contour": _single(contour, rows, n),
+                "contour": rings(contour, n_contour, rows, n),
                 "n_contour": n_contour[rows],
                 "n_inner": n_inner[rows],
                 "grid": points,
@@ -124,7 +123,7 @@ def move_inner_vertices(
         (out,) = session("nn2_moves").run(
             None,
             {
-                "contour": _single(contour, rows, n),
+                "contour": rings(contour, n_contour, rows, n),
                 "n_contour": n_contour[rows],
                 "inner": _single(inner, rows, m),
                 "n_inner": n_inner[rows],
@@ -152,42 +151,27 @@ def centre_stars(ring: np.ndarray, n_ring: np.ndarray) -> np.ndarray:
     return np.concatenate(found, axis=1)[:, : len(n_ring)].astype(np.float64)
 
 
-def _pieces(count: int, size: int) -> list[slice]:
-    """Slices of `count` rows of so many points each, a call's worth at a time; two rows at the least."""
-    ends = np.linspace(0, count, 1 + -(-count * size // _CALL_SIZE)).astype(np.int64)
+def _pieces(count: int, size: int, call: int = _CALL_SIZE) -> list[slice]:
+    """Slices of `count` rows of so many points each, a call's worth at a time."""
+    ends = np.linspace(0, count, 1 + max(1, min(count, -(-count * size // call)))).astype(np.int64)
     return [slice(start, end) for start, end in pairwise(ends.tolist())]
 
 
 def rate_connections(
-    contour: np.ndarray, n_contour: np.ndarray, inner: np.ndarray, n_inner: np.ndarray, entries: np.ndarray
+    points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, entries: np.ndarray
 ) -> np.ndarray:
     """NN3: values (q_worst, q_mean) (P, 2) float64 of entries of the connection tables.
 
-    entries: (P, 3) int64, sorted (contour, facet, vertex); a contour's inner vertices count on from its n_contour.
+    points: (B, V, 2) contour vertices, then inner vertices, not transformed; entries: (P, 3) int64, sorted (contour,
+    facet, vertex).
     """
-    values = np.zeros((len(entries), 2))
-    first = np.searchsorted(entries[:, 0], np.arange(len(n_contour) + 1))
-    for rows, n, m in _groups(n_contour, n_inner, _PADDED_INNER):
-        size = first[rows + 1] - first[rows]
-        row = np.repeat(np.arange(len(rows)), size)
-        chosen = (first[rows] - np.cumsum(size) + size)[row] + np.arange(len(row))
-        if not len(chosen):
-            continue
-        facet, vertex = entries.T[1:, chosen]
-        n_own = n_contour[rows][row]
-        column = np.where(vertex < n_own, vertex, vertex - n_own + n)
-        (out,) = session("nn3").run(
-            None,
-            {
-                "contour": _single(contour, rows, n),
-                "n_contour": n_contour[rows],
-                "inner": _single(inner, rows, m),
-                "n_inner": n_inner[rows],
-                "entries": np.stack([row, facet, column]),
-            },
-        )
-        values[chosen] = out
-    return values
+    first = np.searchsorted(entries[:, 0], np.arange(len(points) + 1))
+    found = [np.zeros((0, 2))]
+    for part in _pieces(len(points), max(1, len(entries) // max(1, len(points))), _CALL_ENTRIES):
+        rows = slice(first[part.start], first[part.stop])
+        described = describe(points[part], n_contour[part], n_inner[part], entries[rows] - [part.start, 0, 0])
+        found += session("nn3").run(None, vars(described))
+    return np.concatenate(found).astype(np.float64)
 
 
 def _groups(n_contour: np.ndarray, n_other: np.ndarray, sizes: np.ndarray) -> Iterator[tuple[np.ndarray, int, int]]:
@@ -204,6 +188,19 @@ def _groups(n_contour: np.ndarray, n_other: np.ndarray, sizes: np.ndarray) -> It
         step = max(1, _CALL_SIZE // (n + m))
         for start in range(0, len(rows), step):
             yield rows[start : start + step], n, m
+
+
+def rings(contour: np.ndarray, n_contour: np.ndarray, rows: np.ndarray, size: int) -> np.ndarray:
+    """Rows of contours as (len(rows), 2, size + 2) float32: the last vertex before the first, the first after the last.
+
+    What is behind that is 0.
+    """
+    count, width = n_contour[rows], min(size, contour.shape[1])
+    out = np.zeros((len(rows), 2, size + 2), dtype=np.float32)
+    out[:, :, 1 : width + 1] = contour[rows, :width].swapaxes(1, 2)
+    out[:, :, 0] = contour[rows, count - 1]
+    out[np.arange(len(rows)), :, count + 1] = contour[rows, 0]
+    return out
 
 
 def _single(points: np.ndarray, rows: np.ndarray, size: int) -> np.ndarray:

@@ -14,19 +14,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from . import networks
 from .closing import MOST_EDGES
 from .errors import ContourError
 from .paper_placement import GRID, decode, grid_points, patches
 from .roles import SHIPPED, Arrays, Roles
-from .runtime import open_session
+from .runtime import MODELS, open_session
 from .stopwatch import Stopwatch
 from .transform import superimpose
 
 if TYPE_CHECKING:
     import onnxruntime
 
-FOLDER = networks.FOLDER.parent / "paper_models"
+FOLDER = MODELS.parent / "paper_models"
 CONNECTIONS = {"paper": "nn3", "paper*": "nn3_star"}
 _ROWS = 1 << 14  # in one call of a network
 
@@ -179,9 +178,8 @@ def score_patches(ask: Callable[[np.ndarray], np.ndarray], given: np.ndarray, re
 def _rate(
     connection: str,
     folder: Path,
-    contour: np.ndarray,
+    points: np.ndarray,
     n_contour: np.ndarray,
-    inner: np.ndarray,
     n_inner: np.ndarray,
     entries: np.ndarray,
 ) -> np.ndarray:
@@ -191,7 +189,7 @@ def _rate(
         trained = is_trained(connection, (n, m), folder)
         return table_network(folder, n, m, connection)(rows) if trained else None
 
-    return rate(ask, connection == "nn3_star", contour, n_contour, inner, n_inner, entries)
+    return rate(ask, connection == "nn3_star", points, n_contour, n_inner, entries)
 
 
 def table_network(folder: Path, n: int, m: int, connection: str = "nn3") -> Callable[[np.ndarray], np.ndarray]:
@@ -202,9 +200,8 @@ def table_network(folder: Path, n: int, m: int, connection: str = "nn3") -> Call
 def rate(
     ask: Callable[[int, int, np.ndarray], np.ndarray | None],
     by_row: bool,
-    contour: np.ndarray,
+    points: np.ndarray,
     n_contour: np.ndarray,
-    inner: np.ndarray,
     n_inner: np.ndarray,
     entries: np.ndarray,
 ) -> np.ndarray:
@@ -214,16 +211,18 @@ def rate(
     network was trained; by_row: a table's rows one by one, for rows that end with the edge's index as 1 of N_C.
     """
     values = np.zeros((len(entries), 2))
-    first = superimpose(contour, n_contour).first
+    transformation = superimpose(points, n_contour)
+    points, first = transformation.apply(points), transformation.first
     for n, m, rows in _groups(n_contour, n_inner):
-        given = np.concatenate([_begun(contour[rows, :n], first[rows]), inner[rows, :m].reshape(len(rows), -1)], axis=1)
+        inner = points[rows, n : n + m].reshape(len(rows), -1)
+        given = np.concatenate([_begun(points[rows, :n], first[rows]), inner], axis=1)
         if by_row:
             given = np.concatenate([np.repeat(given, n, axis=0), np.tile(np.eye(n), (len(given), 1))], axis=1)
         found = ask(n, m, given)
         if found is None:
             continue
         table = found.reshape(len(rows), n, n + m)
-        place = np.full(len(contour), -1)
+        place = np.full(len(points), -1)
         place[rows] = np.arange(len(rows))
         chosen = np.flatnonzero(place[entries[:, 0]] >= 0)
         row, facet, vertex = entries[chosen].T

@@ -16,16 +16,17 @@ Arrays = tuple[np.ndarray, np.ndarray]
 
 @dataclass(frozen=True)
 class Roles:
-    """What the scheme asks, of transformed contours (B, N, 2) float64 with n_contour (B,) vertices each.
+    """What the scheme asks, of contours (B, N, 2) float64 with n_contour (B,) vertices each, transformed but for NN3.
 
     count: NN1; n_contour, l_s (B,) -> N_I (B,) int64. place: NN2; n_contour, n_inner, l_s, watch -> distinct inner
-    vertices (B, M, 2) inside, and how many each contour got (B,), at most n_inner. rate: NN3; n_contour, inner vertices
-    (B, M, 2), n_inner, entries (P, 3) sorted (contour, facet, vertex) -> (q_worst, q_mean) (P, 2) float64.
+    vertices (B, M, 2) inside, and how many each contour got (B,), at most n_inner. rate: NN3; vertices (B, V, 2) of
+    contours, inner ones right after them, n_contour, n_inner, entries (P, 3) sorted (contour, facet, vertex) ->
+    (q_worst, q_mean) (P, 2) float64.
     """
 
     count: Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
     place: Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray, Stopwatch], Arrays]
-    rate: Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
+    rate: Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 
 def _place(

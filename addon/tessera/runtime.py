@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import onnxruntime
 
+MODELS = Path(__file__).resolve().parents[2] / "onnx_models"
 KNOWN = "1.19 to 1.32"  # the versions that were tried
 _REMEDY = (
     "If another add-on brought it, disable or update that one; else install Tessera again. Then start Blender (or "

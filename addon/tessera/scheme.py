@@ -16,7 +16,7 @@ from .triangulation import triangulate
 
 LARGEST_CONTOUR = 16
 # Contours that are on their way at a time: a few kB each, times what a stage holds beside them.
-_PIECE = 1 << 11
+_PIECE = 1 << 13
 
 
 @dataclass(frozen=True)
@@ -133,14 +133,8 @@ def connect(
     points: (B, V, 2), contour vertices, then inner vertices; entries: (contour, facet, vertex), sorted.
     """
     with watch("NN3"):
-        n, m = int(n_contour.max()), max(1, int(n_inner.max()))
-        transformed = superimpose(points[:, :n], n_contour).apply(points)
-        # Inner vertices start at each contour's own N_C here and at the padded one in the network.
-        index = np.minimum(n_contour[:, None] + np.arange(m), points.shape[1] - 1)
-        inner = transformed[np.arange(len(points))[:, None], index]
-        rated = roles.rate(transformed[:, :n], n_contour, inner, n_inner, entries)
         # Rounded, so that a last bit, which may depend on the processor, decides less often.
-        return np.round(rated, 4)
+        return np.round(roles.rate(points, n_contour, n_inner, entries), 4)
 
 
 def join_vertices(contours: np.ndarray, n_contour: np.ndarray, inner: np.ndarray, n_inner: np.ndarray) -> np.ndarray:

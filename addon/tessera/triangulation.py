@@ -77,7 +77,7 @@ from .visibility import bits_of, edge_sides, pack_words, padded_size, possible_e
 Connect = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 # Where contours are divided by their number of vertices into groups of a level.
-_SIZES = (5, 7, 10, 14, 20)
+_SIZES = (5, 7, 10, 14, 18, 22, 26)
 # Best entries of a contour that are looked at in a step: of many contours, and of few, whose calls cost more.
 _TOGETHER = 3, 8
 # So few contours join those of the next size, as calls cost more than padding.

@@ -1,19 +1,27 @@
 """Which elements are possible: on which side of all lines through a contour vertex all vertices lie, and the tests.
 
 Every decision of the triangulation is taken from these sides, so no two decisions can contradict each other. They are
-computed once for all levels of the recursion, as batched products of small matrices in single precision; what the error
-bound leaves open goes to `predicates.orientation`. They are kept as words, one bit for each vertex, and one operation
+computed once for all levels of the recursion, as batched products of small matrices in single precision, by
+onnxruntime, whose products of such matrices take a quarter of numpy's time; what the error bound leaves open goes to
+`predicates.orientation`. They are kept as words, one bit for each vertex, and one operation
 on words tests a line or a triangle against all vertices at once. Arrays of words that much is done with have the
 contours last, as operations on long rows are fast.
 
 Words are unsigned integers or, for more than 64 bits, Python's own in object arrays: the same operators, only slower.
 """
 
+from __future__ import annotations
+
 from functools import cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .predicates import orientation
+from .runtime import MODELS, open_session
+
+if TYPE_CHECKING:
+    import onnxruntime
 
 # Single precision, u = 2^-24, with every contour moved and stretched into [-1, 1]² (up to twice that if it is a few
 # ulps wide, which the rest of the bound covers). Rounding a vertex changes a determinant by at most 4 u, so three do
@@ -41,6 +49,11 @@ def as_bools(words: np.ndarray, bits: np.ndarray) -> np.ndarray:
     return (words[..., None] & bits) != 0
 
 
+def any_bit(words: np.ndarray) -> np.ndarray:
+    """1 where any bit of a word is set, else 0, as words: so that what follows needs no other type."""
+    return np.minimum(words, words.dtype.type(1) if words.dtype != object else 1)
+
+
 def edge_starts(n_contour: np.ndarray) -> np.ndarray:
     """Contour vertices from which edges start: (B, max n_contour + 1), 0 to n_contour - 1, then 0 again (and padding).
 
@@ -64,20 +77,18 @@ def vertex_sides(points: np.ndarray, n_vertices: np.ndarray) -> np.ndarray:
     low, high = coordinates.min(axis=2, keepdims=True), coordinates.max(axis=2, keepdims=True)
     middle, half = low + (high - low) / 2, (high - low) / 2
     vertices = np.zeros((n_rows, 3, padded_size(width)), dtype=np.float32)
-    vertices[:, :2, :width] = (coordinates - middle) / np.where(half > 0, half, 1)
+    vertices[:, :2, :width] = (coordinates - middle) / np.where(half > 0, half, 1) * present[:, None]
     vertices[:, 2, :width] = present
-    # Each line is looked at in one direction. It has (x, y) on its left if (b - d) x + (c - a) y + (a d - b c) > 0.
+    # Each line is looked at in one direction.
     u, v = np.triu_indices(width, 1)
-    (a, b), (c, d) = (vertices[:, :2].take(ends, axis=2).transpose(1, 0, 2) for ends in (u, v))
-    lines = np.stack([b - d, c - a, a * d - b * c], axis=1).transpose(0, 2, 1)
-    vertices[:, :2, :width] *= present[:, None]
+    lines = np.array([u, v])
     n_lines = len(u)
     # Left of all lines, right of them, and nothing.
     words = np.zeros((n_rows, 2 * n_lines + 1), dtype=bits.dtype)
     block = max(1, _BLOCK_SIZE // (n_lines * vertices.shape[2]))
     for first in range(0, n_rows, block):
         rows = slice(first, first + block)
-        determinant = lines[rows] @ vertices[rows]
+        (determinant,) = _determinants().run(None, {"vertices": vertices[rows], "lines": lines})
         words[rows, :n_lines] = pack_words(determinant > _ERROR_BOUND, bits.dtype)
         words[rows, n_lines:-1] = pack_words(determinant < -_ERROR_BOUND, bits.dtype)
     _decide_doubtful(words[:, :n_lines], words[:, n_lines:-1], points, u, v, present, bits)
@@ -85,6 +96,15 @@ def vertex_sides(points: np.ndarray, n_vertices: np.ndarray) -> np.ndarray:
     place[v, u, 0] = place[u, v, 1] = np.arange(n_lines)
     place[v, u, 1] = place[u, v, 0] = n_lines + np.arange(n_lines)
     return words.take(place, axis=1)
+
+
+@cache
+def _determinants() -> onnxruntime.InferenceSession:
+    """Twice the signed areas of lines (u, v) (2, L) and vertices (x, y, 1) (B, 3, V): (B, L, V).
+
+    Always on the processor, as the error bound is that of single precision. Raises RuntimeProblem.
+    """
+    return open_session(MODELS / "determinants.onnx")
 
 
 def padded_size(n_bits: int) -> int:
@@ -179,7 +199,7 @@ def possible_elements(sides: np.ndarray, bits: np.ndarray, n_contour: np.ndarray
     free = to_all[:, 1:, 0] | to_all[:, :-1, 1]
     free |= bits[:, None]
     on_side = ~(edges[:, 1] | bits[:n_facets] | end_bits)
-    free |= -((on_side & bits[:, None]) == 0).astype(bits.dtype)
+    free |= any_bit(on_side & bits[:, None]) - bits.dtype.type(1)
     crossed = crossing(to_all[:n_facets], to_ends, edges, end_bits)
     possible = edges[:, 0] & np.bitwise_and.reduce(free, axis=0) & ~(crossed[:-1] | crossed[1:])
     return possible & np.bitwise_or.reduce(bits, axis=0)
@@ -193,8 +213,7 @@ def crossing(to_start: np.ndarray, to_end: np.ndarray, edges: np.ndarray, end_bi
     """
     # With k left of s -> e, the line from k to v crosses if v is right of s -> e, left of k -> s and right of k -> e;
     # k is left if e is left of k -> s.
-    on_side = (to_start & end_bits[:, None, None]) != 0
-    crossed = on_side * (to_start & to_end[:, :, ::-1])
+    crossed = any_bit(to_start & end_bits[:, None, None]) * (to_start & to_end[:, :, ::-1])
     crossed &= edges[:, None, ::-1]
     crossed = np.bitwise_or.reduce(crossed, axis=0)
     return crossed[:, 0] | crossed[:, 1]

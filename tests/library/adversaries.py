@@ -114,8 +114,10 @@ def corners(points, n_contour, entries):
 
 def scattered(points, n_contour, n_inner, entries):
     """Entries that look random, but depend on the contour's own points alone."""
-    x = corners(points, n_contour, entries) @ [12.9898, 78.233]
-    value = np.sin(1e4 * (x @ [1, 3, 1])) * 43758.5453
+    # Element by element: a product of matrices may round differently from one size of batch to another.
+    x, y = np.moveaxis(corners(points, n_contour, entries), 2, 0)
+    a, b, c = (12.9898 * x + 78.233 * y).T
+    value = np.sin(1e4 * (a + 3 * b + c)) * 43758.5453
     return np.stack([value % 1, (7 * value) % 1], axis=-1)
 
 

@@ -12,8 +12,8 @@ def test_a_network_is_asked_for_its_own_group_alone():
     asked = []
     role = comparing.asking(lambda rows: asked.append(rows) or np.full((len(rows), 6 * 7), 0.5), 6, 1, by_row=False)
     corners = np.stack([contours.transformed_sector(np.random.default_rng(seed), 6) for seed in (1, 2)])
-    inner, entries = np.zeros((2, 1, 2)), np.array([[0, 0, 6], [1, 2, 6]])
-    values = role.rate(corners, np.array([6, 6]), inner, np.array([1, 0]), entries)
+    points, entries = np.concatenate([corners, np.zeros((2, 1, 2))], axis=1), np.array([[0, 0, 6], [1, 2, 6]])
+    values = role.rate(points, np.array([6, 6]), np.array([1, 0]), entries)
     assert [rows.shape for rows in asked] == [(1, 14)]
     np.testing.assert_array_equal(values, [[0.5, 0], [0, 0]])
 

@@ -13,6 +13,8 @@ from training import configuration, contours, generate, measures, meshing, refer
 from training.compact import pack, unpack
 from training.data import Examples, elements_of, is_clear, levels, reflect
 from training.export import INPUTS, sample
+from training.geometry import lower, outline
+from training.layers import Boundary
 from training.networks import ROLES
 
 CONFIG = configuration.read()["data"]
@@ -190,31 +192,24 @@ def test_reflection_keeps_contours_counter_clockwise(shard):
     np.testing.assert_allclose(mirrored.contour[:, 0], data.contour[:, 0] * [1, -1])
 
 
-@pytest.mark.parametrize("role", ["nn2_moves", "nn3"])
-def test_the_order_of_inner_vertices_does_not_matter(role):
+def test_the_order_of_inner_vertices_does_not_matter():
     torch.manual_seed(0)
-    net, inputs = ROLES[role](), sample(np.random.default_rng(5), 6, 12, 7)
+    net, inputs = ROLES["nn2_moves"](), sample(np.random.default_rng(5), 6, 12, 7)
     inputs["n_inner"][:] = 7
     order = torch.tensor([3, 1, 6, 0, 2, 5, 4])
-    given = {name: inputs[name] for name in INPUTS[role]}
-    if role == "nn3":
-        row, vertex = torch.arange(6).repeat_interleave(7), torch.arange(7).repeat(6)
-        given["entries"] = torch.stack([row, torch.zeros_like(row), 12 + vertex])
+    given = {name: inputs[name] for name in INPUTS["nn2_moves"]}
     with torch.no_grad():
         here = net(**given)
         there = net(**(given | {"inner": inputs["inner"][:, order]}))
-    here = here.reshape(6, 7, 2) if role == "nn3" else here
-    there = there.reshape(6, 7, 2) if role == "nn3" else there
     torch.testing.assert_close(here[:, order], there, atol=1e-5, rtol=1e-4)
 
 
-@pytest.mark.parametrize("role", list(ROLES))
+@pytest.mark.parametrize("role", ["nn1", "nn2_scores", "nn2_moves"])
 def test_padding_does_not_matter(role):
     torch.manual_seed(0)
     net, inputs = ROLES[role](), sample(np.random.default_rng(6), 6, 12, 7)
-    inputs["entries"][2] = 1 + inputs["entries"][2] % 2
     padded = dict(inputs)
-    padded["contour"] = torch.nn.functional.pad(inputs["contour"], (0, 0, 0, 4), value=3.0)
+    padded["contour"] = torch.nn.functional.pad(inputs["contour"], (0, 4), value=3.0)
     padded["inner"] = torch.nn.functional.pad(inputs["inner"], (0, 0, 0, 5), value=-2.0)
     with torch.no_grad():
         here, there = (net(**{name: d[name] for name in INPUTS[role]}) for d in (inputs, padded))
@@ -222,6 +217,18 @@ def test_padding_does_not_matter(role):
         real = torch.arange(7) < inputs["n_inner"][:, None]
         here, there = here[real], there[:, :7][real]
     torch.testing.assert_close(here, there, atol=1e-4, rtol=1e-4)
+
+
+def test_the_boundary_is_known_by_the_ways_to_it():
+    """What a point hears of the contour is the same wherever both are."""
+    torch.manual_seed(0)
+    layer, inputs = Boundary(8), sample(np.random.default_rng(7), 4, 9, 1)
+    point, heard = torch.tensor([0.3, -0.2]), []
+    for shift in (torch.zeros(2), torch.tensor([1.5, -0.7])):
+        shape = outline(inputs["contour"] + shift.reshape(1, 2, 1), inputs["n_contour"], torch.full((4,), 0.5))
+        x, y = ((point + shift) / 0.5).reshape(2, 1, 1).expand(2, 4, 1)
+        heard.append(layer(lower(x, y), shape))
+    torch.testing.assert_close(*heard, atol=1e-4, rtol=1e-4)
 
 
 def test_the_teacher_s_mesh_is_valid_and_lacks_no_more_than_the_reference_s():
