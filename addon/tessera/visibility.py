@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 # u.
 _ERROR_BOUND = np.float32(2.0**-18)
 # Determinants computed at a time, so that they stay in the processor's cache.
-_BLOCK_SIZE = 1 << 17
+_BLOCK_SIZE = 1 << 18
 
 
 @cache
@@ -47,11 +47,6 @@ def bits_of(n_bits: int) -> np.ndarray:
 def as_bools(words: np.ndarray, bits: np.ndarray) -> np.ndarray:
     """Words (...) as (..., len(bits)) bool."""
     return (words[..., None] & bits) != 0
-
-
-def any_bit(words: np.ndarray) -> np.ndarray:
-    """1 where any bit of a word is set, else 0, as words: so that what follows needs no other type."""
-    return np.minimum(words, words.dtype.type(1) if words.dtype != object else 1)
 
 
 def edge_starts(n_contour: np.ndarray) -> np.ndarray:
@@ -80,17 +75,17 @@ def vertex_sides(points: np.ndarray, n_vertices: np.ndarray) -> np.ndarray:
     vertices[:, :2, :width] = (coordinates - middle) / np.where(half > 0, half, 1) * present[:, None]
     vertices[:, 2, :width] = present
     # Each line is looked at in one direction.
-    u, v = np.triu_indices(width, 1)
-    lines = np.array([u, v])
-    n_lines = len(u)
+    ends = np.triu_indices(width, 1)
+    n_lines = len(ends[0])
     # Left of all lines, right of them, and nothing.
     words = np.zeros((n_rows, 2 * n_lines + 1), dtype=bits.dtype)
     block = max(1, _BLOCK_SIZE // (n_lines * vertices.shape[2]))
     for first in range(0, n_rows, block):
         rows = slice(first, first + block)
-        (determinant,) = _determinants().run(None, {"vertices": vertices[rows], "lines": lines})
+        determinant = _determinants(vertices[rows], *ends)
         words[rows, :n_lines] = pack_words(determinant > _ERROR_BOUND, bits.dtype)
         words[rows, n_lines:-1] = pack_words(determinant < -_ERROR_BOUND, bits.dtype)
+    u, v = ends
     _decide_doubtful(words[:, :n_lines], words[:, n_lines:-1], points, u, v, present, bits)
     place = np.full((width, width, 2), 2 * n_lines)
     place[v, u, 0] = place[u, v, 1] = np.arange(n_lines)
@@ -98,9 +93,22 @@ def vertex_sides(points: np.ndarray, n_vertices: np.ndarray) -> np.ndarray:
     return words.take(place, axis=1)
 
 
+def _determinants(vertices: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    """(B, L, V) twice the signed areas of the triangles of lines from u to v (L,), and vertices (x, y, 1) (B, 3, V).
+
+    A line has (x, y) on its left if (b - d) x + (c - a) y + (a d - b c) > 0.
+    """
+    (a, b), (c, d) = (vertices[:, :2].take(end, axis=2).swapaxes(0, 1) for end in (u, v))
+    lines = np.empty((len(vertices), 3, len(u)), dtype=np.float32)
+    np.subtract(b, d, out=lines[:, 0])
+    np.subtract(c, a, out=lines[:, 1])
+    np.subtract(a * d, b * c, out=lines[:, 2])
+    return _product().run(None, {"lines": lines, "vertices": vertices})[0]
+
+
 @cache
-def _determinants() -> onnxruntime.InferenceSession:
-    """Twice the signed areas of lines (u, v) (2, L) and vertices (x, y, 1) (B, 3, V): (B, L, V).
+def _product() -> onnxruntime.InferenceSession:
+    """Products (B, L, V) of lines (B, 3, L) and vertices (B, 3, V).
 
     Always on the processor, as the error bound is that of single precision. Raises RuntimeProblem.
     """
@@ -199,7 +207,7 @@ def possible_elements(sides: np.ndarray, bits: np.ndarray, n_contour: np.ndarray
     free = to_all[:, 1:, 0] | to_all[:, :-1, 1]
     free |= bits[:, None]
     on_side = ~(edges[:, 1] | bits[:n_facets] | end_bits)
-    free |= any_bit(on_side & bits[:, None]) - bits.dtype.type(1)
+    free |= -((on_side & bits[:, None]) == 0).astype(bits.dtype)
     crossed = crossing(to_all[:n_facets], to_ends, edges, end_bits)
     possible = edges[:, 0] & np.bitwise_and.reduce(free, axis=0) & ~(crossed[:-1] | crossed[1:])
     return possible & np.bitwise_or.reduce(bits, axis=0)
@@ -213,7 +221,8 @@ def crossing(to_start: np.ndarray, to_end: np.ndarray, edges: np.ndarray, end_bi
     """
     # With k left of s -> e, the line from k to v crosses if v is right of s -> e, left of k -> s and right of k -> e;
     # k is left if e is left of k -> s.
-    crossed = any_bit(to_start & end_bits[:, None, None]) * (to_start & to_end[:, :, ::-1])
+    on_side = (to_start & end_bits[:, None, None]) != 0
+    crossed = on_side * (to_start & to_end[:, :, ::-1])
     crossed &= edges[:, None, ::-1]
     crossed = np.bitwise_or.reduce(crossed, axis=0)
     return crossed[:, 0] | crossed[:, 1]
