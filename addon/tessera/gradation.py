@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from .cones import Cones, Places, build_cones, join_places, lowest
+from .contour import lost_in_rounding, real_numbers
 from .errors import ContourError
 from .sampling import Samples, neighbours, sample_domain
 from .sizing import Limits, Sizing, checked_lengths, parts_of
@@ -126,7 +127,7 @@ def _prepare_one(loops: list[np.ndarray], sizing: Sizing, limits: Limits, most_t
         places += _feet(samples, limits.slope)
         cones = build_cones(join_places(places)) if places else None
         values = lowest(cones, samples.points, np.zeros(len(values), dtype=np.int64), values)
-    if error := _too_many(samples, values, most_triangles):
+    if error := _too_many(samples, values, most_triangles) or lost_in_rounding(loops, values.min()):
         raise error
     if values.min() == values.max():
         return [], None, values.max(), shortest
@@ -141,8 +142,8 @@ def _smallest_of(functions: list[Callable[[np.ndarray], np.ndarray]], points: np
     for function in functions if len(points) else ():
         given = function(points.copy())
         try:
-            values = np.asarray(given, dtype=np.float64)
-        except (TypeError, ValueError):
+            values = real_numbers(given, "a sizing")
+        except ValueError:
             values = np.zeros(0)
         if values.shape != (len(points),):
             place = tuple(map(float, points[0]))
@@ -155,7 +156,9 @@ def _smallest_of(functions: list[Callable[[np.ndarray], np.ndarray]], points: np
 
 
 def _shape_of(given: object) -> str:
-    return f"an array of shape {given.shape}" if isinstance(given, np.ndarray) else f"a {type(given).__name__}"
+    if isinstance(given, np.ndarray):
+        return f"an array of {given.dtype} of shape {given.shape}"
+    return f"a {type(given).__name__}"
 
 
 def _rises(samples: Samples, slope: float) -> tuple[np.ndarray, np.ndarray]:

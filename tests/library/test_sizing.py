@@ -257,6 +257,8 @@ def test_a_batch_is_each_domain_alone():
         (lambda points: 0.1, "float"),
         (lambda points: "long", "str"),
         (lambda points: None, "NoneType"),
+        (lambda points: np.full(len(points), 0.1 + 0.1j), "complex128"),
+        (lambda points: np.full(len(points), np.timedelta64(1)), "timedelta64"),
     ],
 )
 def test_a_function_that_gives_no_lengths(sizing, message):
