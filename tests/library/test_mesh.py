@@ -98,6 +98,12 @@ def test_a_batch_is_each_domain_alone():
             np.testing.assert_array_equal(alone.vertices, mesh.vertices)
 
 
+def test_domains_may_be_any_iterables():
+    loops = [SQUARE * 4, SQUARE + 1]
+    (one,) = tessera.mesh_many(((loop for loop in loops) for _ in range(1)), 0.8)
+    np.testing.assert_array_equal(one.vertices, tessera.mesh((loop for loop in loops), 0.8).vertices)
+
+
 def test_kept_long_edges_coarsen_no_other_mesh():
     plate, disk = [SQUARE * 4], [circle(24) * 0.5 + 0.6]
     (alone,) = mesh_domains([disk], 0.1, Settings(boundary="keep"))
