@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .contour import checked_points, edges_of, meeting_error, signed_area, without_repeats
+from .contour import checked_curves, checked_points, edges_of, meeting_error, signed_area, without_repeats
 from .crossings import close_pairs, gaps
 from .errors import ContourError
 from .graph import Graph, graph_faces
@@ -94,13 +94,13 @@ def planar_domain(domain: Domain) -> PlanarDomain:
     Its reason is that of a contour alone, or "crossing" (contours or lines), "self-intersection", "overlap" (of two
     regions), "outside" (a point or a line), or "on-contour" (a point on one, or a line along one).
     """
-    loops = [_turned(without_repeats(checked_points(loop))) for loop in domain.loops]
+    loops = [_turned(without_repeats(loop)) for loop in checked_curves(domain.loops, "contour")]
     if not loops:
         raise ContourError("too-few-points", "The domain has no contour. Give at least one closed loop of points.")
     low, high = (extreme(np.concatenate(loops), axis=0) for extreme in (np.min, np.max))
     tolerance = TOLERANCE * float((high - low).max())
     points = _checked_points(domain.points)
-    given = [checked_points(line, "a line") for line in domain.lines]
+    given = checked_curves(domain.lines, "line")
     lines = [_checked_line(line) for line in given]
     for what, places in (("Point", points), *(("Line", line) for line in lines)):
         beyond = np.flatnonzero(((places < low - tolerance) | (places > high + tolerance)).any(axis=1))

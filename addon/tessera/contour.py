@@ -68,7 +68,7 @@ def clean_domains(domains: Sequence[Sequence[ArrayLike]]) -> list[list[np.ndarra
     results: list[list[np.ndarray] | ContourError] = []
     for loops in domains:
         try:
-            results.append([without_repeats(checked_points(points)) for points in loops])
+            results.append([without_repeats(points) for points in checked_curves(loops, "contour")])
         except ContourError as error:
             results.append(error)
     complete = False
@@ -106,7 +106,7 @@ def checked_points(points: ArrayLike, name: str = "a contour") -> np.ndarray:
         raise ValueError(message + ("; a domain is a sequence of contours" if points.shape == (2,) else ""))
     bad = np.nonzero(~np.isfinite(points).all(axis=1))[0]
     if len(bad):
-        message = f"Point {bad[0]} (counting from 0) of {name} has a coordinate that is not a finite number. "
+        message = f"Point {bad[0]} of {name}, counted from 0, has a coordinate that is not a finite number. "
         raise ContourError("not-finite", message + "Remove the point or correct it.")
     return points
 
@@ -137,6 +137,13 @@ def without_repeats(points: np.ndarray) -> np.ndarray:
         message = "All points of the contour lie on one line, so it encloses no area. Move some of them off the line."
         raise ContourError("zero-area", message, place)
     return points
+
+
+def checked_curves(curves: Sequence[ArrayLike], kind: str) -> list[np.ndarray]:
+    """`checked_points` of each of some curves of a kind; what is wrong with one of several names it by its number."""
+    curves = list(curves)
+    names = [f"{kind} {number}" for number in range(len(curves))] if len(curves) > 1 else [f"a {kind}"]
+    return [checked_points(*one) for one in zip(curves, names, strict=False)]
 
 
 def lost_in_rounding(loops: Sequence[np.ndarray], edge_length: float) -> ContourError | None:
