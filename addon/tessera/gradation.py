@@ -185,13 +185,19 @@ def _feet(samples: Samples, slope: float) -> list[Places]:
 def _fewest_triangles(samples: Samples, slope: float) -> float:
     """How many triangles there are at least: in each cell the length may grow from its place to all sides."""
     inside = samples.inside
-    growth = slope / np.sqrt(np.pi) * np.minimum(samples.size[inside] / samples.values[inside], _MOST_EDGES)
+    growth = slope / np.sqrt(np.pi) * _edges_along(samples.size[inside], samples.values[inside])
     return _EQUILATERAL * 2 * np.pi / slope**2 * float(np.sum(np.log1p(growth) - growth / (1 + growth)))
+
+
+def _edges_along(size: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """(n,) how many edges of lengths (n,) fit along the sides (n,) of cells, at most `_MOST_EDGES`."""
+    with np.errstate(over="ignore"):
+        return np.minimum(size / values, _MOST_EDGES)
 
 
 def _too_many(samples: Samples, values: np.ndarray, most: int) -> ContourError | None:
     """The error "too-many-triangles" of lengths `values` (n,) in the cells, if there are more than `most`."""
-    edges = np.minimum(samples.size / values, _MOST_EDGES)
+    edges = _edges_along(samples.size, values)
     triangles = _EQUILATERAL * np.sum(edges[samples.inside] ** 2) + np.sum(samples.boundary() / samples.size * edges)
     if triangles <= most:
         return None

@@ -314,7 +314,8 @@ def test_limits_that_are_none():
             tessera.mesh([SQUARE], 0.2, **wrong)
 
 
-@pytest.mark.parametrize("length", [1e-300, 1e-9, 1e-5, 3e-4])
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("length", [5e-324, 1e-300, 1e-9, 1e-5, 3e-4])
 def test_too_many_triangles_are_seen_before_they_are_made(length):
     asked = []
 
