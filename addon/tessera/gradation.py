@@ -148,7 +148,7 @@ def _smallest_of(functions: list[Callable[[np.ndarray], np.ndarray]], points: np
         if values.shape != (len(points),):
             place = tuple(map(float, points[0]))
             message = f"The sizing function gave {_shape_of(given)} for {len(points)} points, of which the first is "
-            message += f"({place[0]:g}, {place[1]:g}). Let it give an array of shape ({len(points)},)."
+            message += f"({place[0]:g}, {place[1]:g}). Let it give real numbers, an array of shape ({len(points)},)."
             raise ContourError("sizing", message, place)
         checked_lengths(values, points, "The sizing function")
         smallest = np.minimum(smallest, values)
