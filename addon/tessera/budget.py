@@ -1,11 +1,11 @@
-"""Whether a domain can be meshed at its target edge length with no more triangles than there may be."""
+"""Whether a domain can be meshed at its target edge length: with no more triangles than there may be, and exactly."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from .constraints import PlanarDomain
-from .contour import Nesting, signed_area
+from .contour import Nesting, lost_in_rounding, signed_area
 from .errors import ContourError
 
 MOST_TRIANGLES = 5_000_000
@@ -14,17 +14,19 @@ MOST_TRIANGLES = 5_000_000
 def checked_domain(
     loops: list[np.ndarray] | ContourError, nested: Nesting, edge_length: float
 ) -> list[np.ndarray] | ContourError:
-    """Clean loops, or the error of a domain that has none or would have too many triangles."""
+    """Clean loops, or the error of a domain that has none, or would have too many triangles or too small ones."""
     if isinstance(loops, ContourError):
         return loops
     if not loops:
         return ContourError("too-few-points", "The domain has no contour. Give at least one closed loop of points.")
-    return _too_many(enclosed_area(loops, nested), total_length(loops), edge_length) or loops
+    error = _too_many(enclosed_area(loops, nested), total_length(loops), edge_length)
+    return error or lost_in_rounding(loops, edge_length) or loops
 
 
 def checked_graph(domain: PlanarDomain, edge_length: float) -> list[np.ndarray] | ContourError:
-    """The domain's clean loops, or the error of one that would have too many triangles."""
-    return _too_many(domain.graph.area(), domain.graph.length(), edge_length) or domain.loops
+    """The domain's clean loops, or the error of one that would have too many triangles or too small ones."""
+    error = _too_many(domain.graph.area(), domain.graph.length(), edge_length)
+    return error or lost_in_rounding(domain.loops, edge_length) or domain.loops
 
 
 def _too_many(area: float, length: float, edge_length: float) -> ContourError | None:

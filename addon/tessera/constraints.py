@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .contour import checked_points, edges_of, meeting_error, signed_area, without_repeats
+from .contour import checked_curves, checked_points, edges_of, meeting_error, signed_area, without_repeats
 from .crossings import close_pairs, gaps
 from .errors import ContourError
 from .graph import Graph, graph_faces
@@ -94,13 +94,14 @@ def planar_domain(domain: Domain) -> PlanarDomain:
     Its reason is that of a contour alone, or "crossing" (contours or lines), "self-intersection", "overlap" (of two
     regions), "outside" (a point or a line), or "on-contour" (a point on one, or a line along one).
     """
-    loops = [_turned(without_repeats(checked_points(loop))) for loop in domain.loops]
+    loops = [_turned(without_repeats(loop)) for loop in checked_curves(domain.loops, "contour")]
     if not loops:
         raise ContourError("too-few-points", "The domain has no contour. Give at least one closed loop of points.")
     low, high = (extreme(np.concatenate(loops), axis=0) for extreme in (np.min, np.max))
     tolerance = TOLERANCE * float((high - low).max())
     points = _checked_points(domain.points)
-    lines = [_checked_line(line) for line in domain.lines]
+    given = checked_curves(domain.lines, "line")
+    lines = [_checked_line(line) for line in given]
     for what, places in (("Point", points), *(("Line", line) for line in lines)):
         beyond = np.flatnonzero(((places < low - tolerance) | (places > high + tolerance)).any(axis=1))
         if len(beyond):
@@ -112,8 +113,8 @@ def planar_domain(domain: Domain) -> PlanarDomain:
         raise _crossing(noded, len(loops), len(loops) + len(lines))
     places = noded.point_of[len(noded.point_of) - len(points) :]
     graph, touching = _graph(noded, len(loops), len(lines), domain.region, places)
-    repeated = len(points) - len(np.unique(places))
-    return PlanarDomain(loops, graph, _touching_warnings(noded.points[touching]) + _repeated_warnings(repeated))
+    repeated = len(points) - len(np.unique(places)), sum(map(len, given)) - sum(map(len, lines))
+    return PlanarDomain(loops, graph, _touching_warnings(noded.points[touching]) + _repeated_warnings(*repeated))
 
 
 def _turned(loop: np.ndarray) -> np.ndarray:
@@ -129,8 +130,8 @@ def _checked_points(points: ArrayLike | None) -> np.ndarray:
     return np.zeros((0, 2)) if points is None else checked_points(points, "points")
 
 
-def _checked_line(line: ArrayLike) -> np.ndarray:
-    line = checked_points(line, "a line")
+def _checked_line(line: np.ndarray) -> np.ndarray:
+    """A line's points (k, 2) that are not at the place of the one before; raises if it has no edge."""
     line = line[np.append(True, (line[1:] != line[:-1]).any(axis=1))] if len(line) else line
     if len(line) < 2 or (len(line) == 3 and np.array_equal(line[0], line[2])):
         place = tuple(map(float, line[0])) if len(line) else None
@@ -215,5 +216,7 @@ def _touching_warnings(places: np.ndarray) -> tuple[str, ...]:
     return (f"contours touch at ({x:.9g}, {y:.9g}){more}: they are meshed as they are, with a common vertex there",)
 
 
-def _repeated_warnings(count: int) -> tuple[str, ...]:
-    return (f"{count} points that must be vertices are given more than once",) if count else ()
+def _repeated_warnings(points: int, of_lines: int) -> tuple[str, ...]:
+    """Warnings of points that must be vertices, and of points of lines, that are given again: how many."""
+    twice = (f"{points} points that must be vertices are given more than once",) if points else ()
+    return twice + ((f"{of_lines} repeated points of lines are left out",) if of_lines else ())

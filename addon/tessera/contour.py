@@ -14,6 +14,8 @@ from .predicates import orientation
 TOLERANCE = 1e-12
 # The squares of lengths, and products of them, must neither overflow nor vanish.
 SMALLEST_SIZE, LARGEST_COORDINATE = 1e-100, 1e100
+# Edges are at least so many times as long as what coordinates are rounded by, and contours four times as many.
+_ROUNDINGS = 16
 
 
 @dataclass(frozen=True)
@@ -66,7 +68,7 @@ def clean_domains(domains: Sequence[Sequence[ArrayLike]]) -> list[list[np.ndarra
     results: list[list[np.ndarray] | ContourError] = []
     for loops in domains:
         try:
-            results.append([without_repeats(checked_points(points)) for points in loops])
+            results.append([without_repeats(points) for points in checked_curves(loops, "contour")])
         except ContourError as error:
             results.append(error)
     complete = False
@@ -83,9 +85,20 @@ def _counter_clockwise(loop: np.ndarray) -> np.ndarray:
     return loop if turn > 0 else loop[::-1].copy()
 
 
+def real_numbers(values: ArrayLike, name: str) -> np.ndarray:
+    """A new float64 array of the values; raises ValueError where something else than real numbers is among them."""
+    try:
+        numbers = np.array(values)
+        if numbers.dtype.kind in "biufO":
+            return numbers.astype(np.float64)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise ValueError(f"{name} is an array of real numbers: {error}") from error
+    raise ValueError(f"{name} is an array of real numbers, not of {numbers.dtype}")
+
+
 def checked_points(points: ArrayLike, name: str = "a contour") -> np.ndarray:
-    """Points (k, 2) as float64; raises ContourError "not-finite", or ValueError if the shape is another."""
-    points = np.array(points, dtype=np.float64)
+    """Points (k, 2) as float64; raises ContourError "not-finite", or ValueError for what is no such array."""
+    points = real_numbers(points, name)
     if points.size == 0:
         points = points.reshape(0, 2)
     if points.ndim != 2 or points.shape[1] != 2:
@@ -93,7 +106,7 @@ def checked_points(points: ArrayLike, name: str = "a contour") -> np.ndarray:
         raise ValueError(message + ("; a domain is a sequence of contours" if points.shape == (2,) else ""))
     bad = np.nonzero(~np.isfinite(points).all(axis=1))[0]
     if len(bad):
-        message = f"Point {bad[0]} (counting from 0) of {name} has a coordinate that is not a finite number. "
+        message = f"Point {bad[0]} of {name}, counted from 0, has a coordinate that is not a finite number. "
         raise ContourError("not-finite", message + "Remove the point or correct it.")
     return points
 
@@ -124,6 +137,28 @@ def without_repeats(points: np.ndarray) -> np.ndarray:
         message = "All points of the contour lie on one line, so it encloses no area. Move some of them off the line."
         raise ContourError("zero-area", message, place)
     return points
+
+
+def checked_curves(curves: Sequence[ArrayLike], kind: str) -> list[np.ndarray]:
+    """`checked_points` of each of some curves of a kind; what is wrong with one of several names it by its number."""
+    curves = list(curves)
+    names = [f"{kind} {number}" for number in range(len(curves))] if len(curves) > 1 else [f"a {kind}"]
+    return [checked_points(*one) for one in zip(curves, names, strict=False)]
+
+
+def lost_in_rounding(loops: Sequence[np.ndarray], edge_length: float) -> ContourError | None:
+    """The error "out-of-range" of loops (k, 2) too far from the origin for edges of a length, or for themselves."""
+    points = np.concatenate(loops)
+    x, y = map(float, points[np.abs(points).max(axis=1).argmax()])
+    rounding = float(np.spacing(max(abs(x), abs(y))))
+    smallest = min(float(np.ptp(loop, axis=0).max()) for loop in loops)
+    if min(edge_length, smallest / 4) >= _ROUNDINGS * rounding:
+        return None
+    message = (
+        f"Coordinates are rounded by {rounding:.2g} at ({x:.9g}, {y:.9g}), which is too much for a contour of the size "
+        f"{smallest:.3g} or an edge length of {edge_length:.3g}. Move the curve nearer to the origin."
+    )
+    return ContourError("out-of-range", message, (x, y))
 
 
 def _meeting_errors(results: list) -> tuple[dict[int, ContourError], bool]:

@@ -4,7 +4,8 @@
 class ContourError(ValueError):
     """Input that cannot be meshed; the message says the cause, the place and the remedy.
 
-    `reason` is a short machine-readable word: "not-finite", "out-of-range" (sizes whose squares overflow or vanish),
+    `reason` is a short machine-readable word: "not-finite", "out-of-range" (sizes whose squares overflow or vanish,
+    or that are lost in the rounding of coordinates far from the origin),
     "too-few-points", "zero-area" (a contour that encloses nothing, or is lost in the tolerance within which contours
     are joined), "self-intersection", "crossing" (two loops cross, or run along each other; a line crosses something),
     "overlap" (of two regions), "outside" (a point or line that is not in the domain), "on-contour" (one that lies on

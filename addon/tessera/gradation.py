@@ -13,6 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from .cones import Cones, Places, build_cones, join_places, lowest
+from .contour import lost_in_rounding, real_numbers
 from .errors import ContourError
 from .sampling import Samples, neighbours, sample_domain
 from .sizing import Limits, Sizing, checked_lengths, parts_of
@@ -126,7 +127,7 @@ def _prepare_one(loops: list[np.ndarray], sizing: Sizing, limits: Limits, most_t
         places += _feet(samples, limits.slope)
         cones = build_cones(join_places(places)) if places else None
         values = lowest(cones, samples.points, np.zeros(len(values), dtype=np.int64), values)
-    if error := _too_many(samples, values, most_triangles):
+    if error := _too_many(samples, values, most_triangles) or lost_in_rounding(loops, values.min()):
         raise error
     if values.min() == values.max():
         return [], None, values.max(), shortest
@@ -141,13 +142,13 @@ def _smallest_of(functions: list[Callable[[np.ndarray], np.ndarray]], points: np
     for function in functions if len(points) else ():
         given = function(points.copy())
         try:
-            values = np.asarray(given, dtype=np.float64)
-        except (TypeError, ValueError):
+            values = real_numbers(given, "a sizing")
+        except ValueError:
             values = np.zeros(0)
         if values.shape != (len(points),):
             place = tuple(map(float, points[0]))
             message = f"The sizing function gave {_shape_of(given)} for {len(points)} points, of which the first is "
-            message += f"({place[0]:g}, {place[1]:g}). Let it give an array of shape ({len(points)},)."
+            message += f"({place[0]:g}, {place[1]:g}). Let it give real numbers, an array of shape ({len(points)},)."
             raise ContourError("sizing", message, place)
         checked_lengths(values, points, "The sizing function")
         smallest = np.minimum(smallest, values)
@@ -155,7 +156,9 @@ def _smallest_of(functions: list[Callable[[np.ndarray], np.ndarray]], points: np
 
 
 def _shape_of(given: object) -> str:
-    return f"an array of shape {given.shape}" if isinstance(given, np.ndarray) else f"a {type(given).__name__}"
+    if isinstance(given, np.ndarray):
+        return f"an array of {given.dtype} of shape {given.shape}"
+    return f"a {type(given).__name__}"
 
 
 def _rises(samples: Samples, slope: float) -> tuple[np.ndarray, np.ndarray]:
@@ -182,13 +185,19 @@ def _feet(samples: Samples, slope: float) -> list[Places]:
 def _fewest_triangles(samples: Samples, slope: float) -> float:
     """How many triangles there are at least: in each cell the length may grow from its place to all sides."""
     inside = samples.inside
-    growth = slope / np.sqrt(np.pi) * np.minimum(samples.size[inside] / samples.values[inside], _MOST_EDGES)
+    growth = slope / np.sqrt(np.pi) * _edges_along(samples.size[inside], samples.values[inside])
     return _EQUILATERAL * 2 * np.pi / slope**2 * float(np.sum(np.log1p(growth) - growth / (1 + growth)))
+
+
+def _edges_along(size: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """(n,) how many edges of lengths (n,) fit along the sides (n,) of cells, at most `_MOST_EDGES`."""
+    with np.errstate(over="ignore"):
+        return np.minimum(size / values, _MOST_EDGES)
 
 
 def _too_many(samples: Samples, values: np.ndarray, most: int) -> ContourError | None:
     """The error "too-many-triangles" of lengths `values` (n,) in the cells, if there are more than `most`."""
-    edges = np.minimum(samples.size / values, _MOST_EDGES)
+    edges = _edges_along(samples.size, values)
     triangles = _EQUILATERAL * np.sum(edges[samples.inside] ** 2) + np.sum(samples.boundary() / samples.size * edges)
     if triangles <= most:
         return None

@@ -156,7 +156,7 @@ def mesh_many(
     Raises ContourError "edge-length" where no domain could be meshed at that length.
     """
     settings = Settings(sizing, min_edge_length, gradation, "resample", corner_angle, passes, flips, smooth)
-    return mesh_domains(domains, edge_length, settings)
+    return mesh_domains([list(loops) for loops in domains], edge_length, settings)
 
 
 def mesh_contour(

@@ -27,8 +27,9 @@ from .steps import Steps, within
 from .stopwatch import Stopwatch
 
 MOST_SEGMENTS = 5
-# An element flatter than this keeps its edges: its sub-contour could cross itself by the rounding of inserted vertices.
-_SLIVER = 1e-6
+# An element flatter than this, or than so many times the rounding of its coordinates over its longest edge, keeps its
+# edges: its sub-contour could cross itself by the rounding of inserted vertices.
+_SLIVER, _ROUNDINGS = 1e-6, 64
 # Where along an edge the sizing function is asked.
 _STATIONS = np.arange(0.1, 1.0, 0.2)
 # Edges no longer than this, times the length that is wanted in the middle, are one segment: it does not change so fast.
@@ -198,7 +199,11 @@ def _segments(
 
 def _beside_slivers(vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray) -> np.ndarray:
     """(e,) which edges belong to an element that is too flat to be split."""
-    return among(edges, sides(triangles[element_quality(vertices, triangles) < _SLIVER]))
+    corners = vertices[triangles]
+    longest = np.sqrt(((corners - np.roll(corners, 1, axis=1)) ** 2).sum(axis=2).max(axis=1))
+    rounding = _ROUNDINGS * np.spacing(np.abs(corners).max(axis=(1, 2)))
+    flat = element_quality(vertices, triangles) * longest < np.maximum(_SLIVER * longest, rounding)
+    return among(edges, sides(triangles[flat]))
 
 
 def _inserted(ends: np.ndarray, segments: np.ndarray, wanted: np.ndarray) -> np.ndarray:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .cones import Places, build_cones, lowest, within
-from .contour import edges_of, nesting
+from .contour import edges_of, nesting, real_numbers
 from .errors import ContourError
 from .noding import TOLERANCE as NODING_TOLERANCE
 from .thickness import thin_parts
@@ -205,7 +205,7 @@ def by_distance(near: float, points: ArrayLike | None = None, *, reach: float | 
 
 def from_values(points: ArrayLike, values: ArrayLike) -> Callable[[np.ndarray], np.ndarray]:
     """Edge lengths (k,) that are known at points (k, 2), and means of the nearest in between."""
-    points, values = _checked_points(points, "from_values"), np.array(values, dtype=np.float64)
+    points, values = _checked_points(points, "from_values"), real_numbers(values, "values")
     if values.shape != points.shape[:1]:
         place = tuple(map(float, points[0]))
         message = f"from_values has {len(points)} points, the first at ({place[0]:g}, {place[1]:g}), and values of "
@@ -228,15 +228,15 @@ def from_values(points: ArrayLike, values: ArrayLike) -> Callable[[np.ndarray], 
 
 
 def _checked_points(points: ArrayLike, name: str) -> np.ndarray:
-    points = np.array(points, dtype=np.float64)
+    points = real_numbers(points, "points")
     if points.ndim != 2 or points.shape[1] != 2 or not len(points):
         message = f"{name} takes points as an array of shape (k, 2), k at least 1, not of shape {points.shape}. "
         raise ContourError("sizing", message + "Give x and y of each point.")
     bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
     if len(bad):
         x, y = points[bad[0]]
-        message = f"{name} takes finite numbers; its point {bad[0] + 1} is ({x:g}, {y:g}). Leave it out or mend it."
-        raise ContourError("sizing", message)
+        message = f"{name} takes finite numbers; its point {bad[0]} (counting from 0) is ({x:g}, {y:g}). "
+        raise ContourError("sizing", message + "Leave it out or mend it.")
     return points
 
 

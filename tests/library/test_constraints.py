@@ -133,6 +133,15 @@ def test_lines_may_end_at_contours_at_each_other_and_share_vertices():
     assert mesh.report.q_mean > 0.93 and mesh.report.warnings == ()
 
 
+def test_repeated_points_of_lines_are_warned_of():
+    line = [[0.2, 0.5], [0.2, 0.5], [0.6, 0.5], [0.8, 0.7], [0.8, 0.7], [0.8, 0.7]]
+    mesh = tessera.mesh([SQUARE], 0.3, lines=(part for part in [line]))
+    check_line(mesh.vertices, mesh.triangles, line, 1.0)
+    assert mesh.report.warnings == ("3 repeated points of lines are left out",)
+    closed = tessera.mesh([SQUARE], 0.3, lines=[SQUARE[[0, 1, 2, 0]] / 2 + 0.2])
+    assert closed.report.warnings == ()
+
+
 def test_a_curved_line_is_sampled_at_the_target_and_keeps_its_corners():
     x = np.linspace(-0.7, 0.7, 200)
     line = np.concatenate([np.column_stack([x, 0.3 * np.sin(5 * x)]), [[0.7, 0.6]]])

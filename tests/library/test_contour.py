@@ -77,6 +77,15 @@ def test_not_finite(bad):
     assert raised.value.reason == "not-finite"
 
 
+def test_one_of_several_contours_is_named_by_its_number():
+    square = np.array([(0.0, 0), (1, 0), (1, 1), (0, 1)])
+    broken = np.where(square == [1, 1], np.nan, square / 4 + 0.5)
+    (error,) = clean_domains([[square, broken]])
+    assert "Point 1 of contour 1, counted from 0" in str(error)
+    with pytest.raises(ValueError, match=r"contour 1 is an array of shape \(k, 2\), not \(4, 3\)"):
+        clean_domains([[square, np.zeros((4, 3))]])
+
+
 def test_wrong_shape_is_a_plain_value_error():
     with pytest.raises(ValueError, match="shape") as raised:
         clean_loop(np.zeros((4, 3)))

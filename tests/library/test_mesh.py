@@ -98,6 +98,12 @@ def test_a_batch_is_each_domain_alone():
             np.testing.assert_array_equal(alone.vertices, mesh.vertices)
 
 
+def test_domains_may_be_any_iterables():
+    loops = [SQUARE * 4, SQUARE + 1]
+    (one,) = tessera.mesh_many(((loop for loop in loops) for _ in range(1)), 0.8)
+    np.testing.assert_array_equal(one.vertices, tessera.mesh((loop for loop in loops), 0.8).vertices)
+
+
 def test_kept_long_edges_coarsen_no_other_mesh():
     plate, disk = [SQUARE * 4], [circle(24) * 0.5 + 0.6]
     (alone,) = mesh_domains([disk], 0.1, Settings(boundary="keep"))
@@ -139,6 +145,8 @@ BOW_TIE = [(0, 0), (2, 2), (2, 0), (0, 2)]
         ("too-many-triangles", [SQUARE], 1e-320),
         ("out-of-range", [SQUARE * 1e-160], 1e-161),
         ("out-of-range", [SQUARE * 1e160], 1e159),
+        ("out-of-range", [SQUARE + 1e15], 1.0),
+        ("out-of-range", [circle(40) + 1e15], 20.0),
     ],
 )
 def test_bad_input(reason, loops, edge_length):
@@ -161,6 +169,26 @@ def test_the_remedy_for_too_many_triangles_is_one(loop):
 def test_any_number_is_an_edge_length(edge_length):
     mesh = tessera.mesh([LETTER_E], edge_length)
     check_mesh(mesh.vertices, mesh.triangles, [LETTER_E])
+
+
+@pytest.mark.parametrize(
+    "loop",
+    [SQUARE + 1j, SQUARE[:, 0] + 1j * SQUARE[:, 1], (p for p in SQUARE), [(0, 0), (10**400, 0), (1, 1)], ["a", "b"], 5],
+    ids=["complex", "complex plane", "generator", "huge", "words", "number"],
+)
+def test_what_is_no_array_of_points_is_a_plain_value_error(loop):
+    with pytest.raises(ValueError, match="a contour is an array") as error:
+        tessera.mesh([loop], 0.1)
+    assert not isinstance(error.value, tessera.ContourError)
+
+
+def test_contours_far_from_the_origin_are_meshed_as_long_as_coordinates_tell_their_points_apart():
+    loop = SQUARE + 1e12  # rounded by 1e-4
+    mesh = tessera.mesh([loop], 0.1)
+    check_mesh(mesh.vertices, mesh.triangles, [loop], keep=False)
+    with pytest.raises(tessera.ContourError, match=r"rounded by 0\.00012") as error:
+        tessera.mesh([loop], 0.1, sizing=lambda points: np.where(points[:, 0] > 1e12 + 0.5, 1e-3, 0.1))
+    assert error.value.reason == "out-of-range" and min(error.value.place) >= 1e12
 
 
 def test_an_error_says_where():

@@ -257,6 +257,8 @@ def test_a_batch_is_each_domain_alone():
         (lambda points: 0.1, "float"),
         (lambda points: "long", "str"),
         (lambda points: None, "NoneType"),
+        (lambda points: np.full(len(points), 0.1 + 0.1j), "complex128"),
+        (lambda points: np.full(len(points), np.timedelta64(1)), "timedelta64"),
     ],
 )
 def test_a_function_that_gives_no_lengths(sizing, message):
@@ -312,7 +314,8 @@ def test_limits_that_are_none():
             tessera.mesh([SQUARE], 0.2, **wrong)
 
 
-@pytest.mark.parametrize("length", [1e-300, 1e-9, 1e-5, 3e-4])
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("length", [5e-324, 1e-300, 1e-9, 1e-5, 3e-4])
 def test_too_many_triangles_are_seen_before_they_are_made(length):
     asked = []
 

@@ -44,6 +44,14 @@ def test_a_small_group_is_not_the_largest_error():
     assert (claim.ours, claim.answer, claim.paper) == ("+23.0 % (12, 14)", "reproduced", "23.41 % (12, 14)")
 
 
+@pytest.mark.parametrize(("most", "ours", "answer"), [(9.0, "2 of 2", "reproduced"), (1.0, "1 of 2", "worse")])
+def test_growth_is_from_the_fewest_vertices_to_the_most(most, ours, answer):
+    rows = [row(22, 6, 2, 8.0), row(22, 6, 1, 2.0), row(22, 8, 4, most), row(22, 8, 3, 4.0), row(22, 8, 2, 5.0)]
+    few = row(22, 6, 5, 0.0, contours=answers.ENOUGH - 1)
+    claim = by_text(stage_claims.stage_claims([*rows, few]), "than with the fewest")
+    assert (claim.ours, claim.answer) == (ours, answer)
+
+
 def test_a_largest_error_of_some_edges_alone_is_no_better():
     rows = [row(27, 6, 1, 12.0), row(22, 14, 3, 1.0)]
     found = list(stage_claims.stage_claims(rows))
@@ -75,6 +83,8 @@ def test_numbers_and_answers_of_groups_reach_their_cells():
     assert (change.paper, change.ours, change.answer) == ("-23 %", "-22 %", "reproduced")
     assert by_text(found, "from N_I 8 to 10").answer == "not tested"
     assert by_text(found, "NN3 alone, ē_worst of N_C 10").ours == "+23.0 % (+10.2 % with sub-contours by CDT)"
+    grows = by_text(found, "than with the fewest")
+    assert (grows.ours, grows.answer, grows.shipped) == ("—", "not tested", "—")
     above = by_text(found, "ē_worst is above those")
     assert (above.ours, above.answer) == ("0 of 1 groups, not (10, 8)", "worse")
 
