@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 # Sizes that contours, inner vertices and grids are padded to.
 _PADDED_EDGES = np.array([4, 8, 12, 16, 24, 32, 48, 64])
-_PADDED_INNER = np.array([2, 4, 8, 12, 16, 24, 32])
+_PADDED_INNER = np.array([1, 2, 4, 6, 8, 12, 16, 24, 32])
 _PADDED_GRID = np.array([16, 32, 48, 64, 96, 128, 192, 256, 400, 48 * 48])
 _MOST = 1e9  # inner vertices that NN1 may ask for
 _KNOWN_TARGETS = 0.25, 20.0  # scaled target edge lengths that NN1 is asked about; it has learnt from 0.25 on

@@ -16,7 +16,7 @@ from .triangulation import triangulate
 
 LARGEST_CONTOUR = 16
 # Contours that are on their way at a time: a few kB each, times what a stage holds beside them.
-_PIECE = 1 << 13
+_PIECE = 1 << 14
 
 
 @dataclass(frozen=True)

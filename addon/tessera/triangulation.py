@@ -83,7 +83,7 @@ _TOGETHER = 3, 8
 # So few contours join those of the next size, as calls cost more than padding.
 _FEW = 128
 # Size in bytes of the words of sides that are held at a time.
-_CHUNK_SIZE = 1 << 26
+_CHUNK_SIZE = 1 << 27
 _NOT_AS_DESCRIBED = "contour {} is no simple counter-clockwise polygon with its inner vertices inside"
 
 

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 # u.
 _ERROR_BOUND = np.float32(2.0**-18)
 # Determinants computed at a time, so that they stay in the processor's cache.
-_BLOCK_SIZE = 1 << 18
+_BLOCK_SIZE = 1 << 17
 
 
 @cache
