@@ -116,7 +116,9 @@ def _closed(polyline: Polyline, tolerance: float) -> np.ndarray:
     if polyline.closed:
         return points
     if np.abs(points[0] - points[-1]).max() > tolerance:
-        remedy = "with Curve > Toggle Cyclic" if polyline.spline else "so that its edges lead back to where they start"
+        remedy = "so that its edges lead back to where they start"
+        if polyline.spline:
+            remedy = "with Curve (or Stroke) > Toggle Cyclic"
         message = f"{name} is open. Close it in Edit Mode, {remedy}."
         raise OutlineError("open", message, points[0], polyline.spline)
     if len(points) < 4:

@@ -187,6 +187,18 @@ def test_a_sizing_without_a_name_has_no_effect_yet_and_says_so(capfd):
     assert "By Object has no effect yet" in said.out + said.err and "By Weight has no effect yet" in said.out + said.err
 
 
+def test_what_a_sizing_refers_to_and_is_no_number_is_one_clear_report():
+    near = bpy.data.objects.new("Near", None)
+    bpy.context.scene.collection.objects.link(near)
+    near.location.y = float("nan")
+    square = poly_curve(SQUARE, name="Square")
+    square.data.splines[0].points[2].radius = float("nan")
+    with pytest.raises(RuntimeError, match=r"^Error: Curve 'Square': .*'Near' .*not a finite number"):
+        bpy.ops.tessera.mesh_curve(use_object=True, object_name="Near")
+    with pytest.raises(RuntimeError, match=r"^Error: Curve 'Square': .*'radius' .*not a finite number"):
+        bpy.ops.tessera.mesh_curve(use_weight=True, weight_name="radius")
+
+
 def test_a_setting_that_is_no_number_is_one_clear_report():
     poly_curve(SQUARE, name="Square")
     with pytest.raises(RuntimeError, match=r"^Error: Curve 'Square': .*must be a positive number"):
