@@ -348,6 +348,38 @@ def test_the_point_of_a_failure_can_be_selected():
     assert tuple(bpy.context.scene.cursor.location) == pytest.approx((5.5, 0.5, 3))
 
 
+@pytest.mark.parametrize("draw", [grease_pencil, hair_curves])
+def test_the_point_of_a_strokes_failure_can_be_selected(draw):
+    if bpy.app.version < (4, 3):
+        pytest.skip("its strokes are of another kind")
+    loops = [np.column_stack([np.array(loop) + (x, 0), np.zeros(4)]) for loop, x in ((SQUARE, 0), (BOW_TIE, 5))]
+    obj = draw(*loops)
+    obj.location, obj.rotation_euler = (0, 2, 0), (0, 0, 0.5)
+    if draw is grease_pencil:
+        obj.data.layers[0].translation = (1, 0, 0)
+    bpy.context.view_layer.update()
+    with pytest.raises(RuntimeError, match="crosses or touches itself"):
+        bpy.ops.tessera.mesh_curve()
+    (noted,) = notes.last
+    button = {"object_name": noted.obj, "spline": noted.spline, "place": noted.place}
+    assert noted.spline == 2 and bpy.ops.tessera.select_place(**button) == {"FINISHED"}
+    assert bpy.context.mode == ("EDIT_GREASE_PENCIL" if draw is grease_pencil else "EDIT_CURVES")
+    holder = obj.data if draw is hair_curves else obj.data.layers[0].frames[0].drawing
+    chosen = [point.value for point in holder.attributes[".selection"].data]
+    assert sum(chosen[:4]) == 0 and sum(chosen[4:]) == 1
+
+
+def test_the_vertex_of_a_meshs_failure_is_seen_also_where_faces_are_selected():
+    bpy.ops.mesh.primitive_monkey_add()
+    bpy.context.tool_settings.mesh_select_mode = (False, False, True)
+    with pytest.raises(RuntimeError, match="It is not flat"):
+        bpy.ops.tessera.mesh_curve()
+    (noted,) = notes.last
+    assert bpy.ops.tessera.select_place(object_name=noted.obj, place=noted.place) == {"FINISHED"}
+    assert bpy.context.object.data.total_vert_sel == 1
+    assert tuple(bpy.context.tool_settings.mesh_select_mode) == (True, False, False)
+
+
 def test_a_success_forgets_the_failures_of_before():
     poly_curve(BOW_TIE, name="Broken")
     with pytest.raises(RuntimeError):
