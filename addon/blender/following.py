@@ -15,7 +15,7 @@ import bpy
 from bpy.app.handlers import persistent
 
 from .kinds import shows_collection
-from .linked import fingerprint, is_draft, is_linked, linked_settings, made_of, source_is_there
+from .linked import fingerprint, is_being_edited, is_draft, is_linked, linked_settings, made_of, source_is_there
 
 # Meshes that take longer than this many seconds are drafted while their source changes. Where drafts take longer than
 # that, they wait, too, until it has not changed for as long as _REST.
@@ -24,6 +24,8 @@ _QUICK, _QUICK_DRAFT, _REST = 0.1, 0.3, 0.5
 _TOO_LONG = 3.0
 # Steps of smoothing that a draft has instead of the networks' passes.
 _SMOOTH = 1
+# What is said at a mesh that waits until it is edited no longer.
+_WAITS = "It is being edited, and will be meshed again in Object Mode"
 
 # Names of meshes: that may be out of date, and whose source is to rest first.
 _wanted: set[str] = set()
@@ -135,6 +137,9 @@ def mesh_again(obj: bpy.types.Object, draft: bool = False) -> bool:
     if not source_is_there(obj):
         obj.tessera.message = "Its source is in no scene"
         return False
+    if is_being_edited(obj):
+        obj.tessera.message = _WAITS
+        return False
     settings, depsgraph = linked_settings(obj), bpy.context.evaluated_depsgraph_get()
     try:
         task = meshing.read_task(obj.tessera.source, depsgraph, settings)
@@ -157,8 +162,12 @@ def _after_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Non
     if changed:
         for obj in _following():
             near = obj.tessera.settings.object_name
-            if changed & {*_parts(obj.tessera.source), *([_key(near)] if near else [])}:
+            if changed & {*_parts(obj.tessera.source), *([_key(near)] if near else [])} or _has_waited(obj):
                 want(obj)
+
+
+def _has_waited(obj: bpy.types.Object) -> bool:
+    return obj.tessera.message == _WAITS and not is_being_edited(obj)
 
 
 def _key(block: bpy.types.ID) -> tuple[str, str]:

@@ -2,6 +2,8 @@
 
 import bpy
 
+# Those whose strokes are in drawings of attributes: not the Grease Pencil of Blender 4.2, which is GPENCIL.
+STROKES = frozenset({"CURVES", "GREASEPENCIL"})
 READABLE = frozenset({"CURVE", "FONT", "CURVES", "GREASEPENCIL", "GPENCIL", "MESH"})
 
 

@@ -125,6 +125,11 @@ def is_linked(obj: bpy.types.Object | None) -> bool:
     return obj.tessera.source is not None
 
 
+def is_being_edited(obj: bpy.types.Object) -> bool:
+    """Whether a mesh object is in another mode than Object Mode: new geometry would get in the way of that."""
+    return obj.mode != "OBJECT" or obj.data.is_editmode
+
+
 def source_is_there(obj: bpy.types.Object) -> bool:
     """Whether a linked mesh's source is still in a scene: what refers to a deleted object keeps it in the file."""
     return bool(obj.tessera.source.users_scene)

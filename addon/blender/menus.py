@@ -13,8 +13,9 @@ _MESH_CURVE = "Mesh Curve by Tessera (Triangulate, Remesh)"
 _REMESH_FACES = "Remesh Flat Faces by Tessera (Triangulate)"
 
 
-def _draw_convert(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
-    if context.object is not None and is_readable(context.object):
+def _draw_context(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    """Where something is selected that can be meshed; what is active does not matter to the operator."""
+    if any(is_readable(obj) for obj in context.selected_objects):
         _draw_curve(menu, context)
 
 
@@ -29,8 +30,8 @@ def _draw_faces(menu: bpy.types.Menu, _context: bpy.types.Context) -> None:
 
 
 _MENUS = (
-    ("VIEW3D_MT_object_convert", _draw_convert),
-    ("VIEW3D_MT_object_context_menu", _draw_convert),
+    ("VIEW3D_MT_object_convert", _draw_curve),  # always, so that search finds it
+    ("VIEW3D_MT_object_context_menu", _draw_context),
     ("VIEW3D_MT_edit_curve", _draw_curve),
     ("VIEW3D_MT_edit_font", _draw_curve),
     ("VIEW3D_MT_edit_curves", _draw_curve),

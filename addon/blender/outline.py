@@ -109,16 +109,18 @@ def make_outline(
 def _closed(polyline: Polyline, tolerance: float) -> np.ndarray:
     """The points (k, 3) of a closed polyline; one whose ends meet is closed."""
     points, name = polyline.points, f"Spline {polyline.spline}" if polyline.spline else "An outline"
+    if not polyline.closed and len(points) > 1 and np.abs(points[0] - points[-1]).max() > tolerance:
+        remedy = "so that its edges lead back to where they start"
+        if polyline.spline:
+            remedy = "with Curve (or Stroke) > Toggle Cyclic"
+        message = f"{name} is open. Close it in Edit Mode, {remedy}."
+        raise OutlineError("open", message, points[0], polyline.spline)
     if len(points) < 3:
         count = "1 point" if len(points) == 1 else f"{len(points)} points"
         message = f"{name} has {count}, and an outline needs at least 3. Add points, or delete it."
         raise OutlineError("too-few-points", message, points[0] if len(points) else None, polyline.spline)
     if polyline.closed:
         return points
-    if np.abs(points[0] - points[-1]).max() > tolerance:
-        remedy = "with Curve > Toggle Cyclic" if polyline.spline else "so that its edges lead back to where they start"
-        message = f"{name} is open. Close it in Edit Mode, {remedy}."
-        raise OutlineError("open", message, points[0], polyline.spline)
     if len(points) < 4:
         message = f"{name} has 2 different points, and an outline needs at least 3. Add points, or delete it."
         raise OutlineError("too-few-points", message, points[0], polyline.spline)

@@ -48,7 +48,7 @@ def fit_plane(points: np.ndarray, to_world: np.ndarray, up: Sequence[float] = (0
 
     points: (n, 3) float64 in the object's space; to_world: (3, 3), the linear part of the object's world matrix; up:
     the direction that the upper side faces. Raises OutlineError: "not-finite", "not-planar", "zero-area" (all points
-    on a line, or a scale of zero).
+    on a line or in one place, or a scale of zero).
     """
     if not np.isfinite(points).all():
         bad = int(np.flatnonzero(~np.isfinite(points).all(axis=1))[0])
@@ -57,6 +57,8 @@ def fit_plane(points: np.ndarray, to_world: np.ndarray, up: Sequence[float] = (0
         raise OutlineError("not-finite", "Its transform has a number that is not finite. Correct it.")
     low, high = points.min(axis=0), points.max(axis=0)
     extent = float(np.linalg.norm(high - low))
+    if extent == 0.0:
+        raise OutlineError("zero-area", "All points are in one place. Give the outline an area.", points[0])
     if high[2] - low[2] <= 1e-6 * extent and up[2] > 0.0:
         # The usual case keeps the object's own X and Y, and its coordinates to the last bit.
         origin, axes = np.array([0.0, 0.0, points[0, 2]]), np.eye(2, 3)

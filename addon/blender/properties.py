@@ -48,6 +48,17 @@ def write_settings(settings: Settings, owner: bpy.types.bpy_struct) -> None:
             write_setting(settings, name, owner)
 
 
+def start_with(settings: Settings, operator: bpy.types.Operator) -> None:
+    """Set what neither a script, a preset nor, if it is to be remembered, the operator's last use says.
+
+    (Blender's own SKIP_SAVE would keep what is not remembered out of presets, too.)
+    """
+    for name, shown in table().items():
+        # A ghost is a value of the last use.
+        if name in _known(operator) and not operator.properties.is_property_set(name, ghost=not shown.remembered):
+            write_setting(settings, name, operator)
+
+
 def write_setting(settings: Settings, name: str, owner: bpy.types.bpy_struct) -> None:
     """Set one property of an operator or a property group."""
     value = getattr(settings, name)
@@ -68,10 +79,7 @@ def _known(owner: bpy.types.bpy_struct):
 def _property(default: bool | int | float | str, shown: Shown, pointers: bool, update: Callable | None):
     """One bpy.props definition."""
     common = {"name": shown.label, "description": shown.description, "update": update}
-    if not shown.remembered:
-        common["options"] = {"SKIP_SAVE"}
     if pointers and shown.names == "object":
-        del common["options"]
         return bpy.props.PointerProperty(type=bpy.types.Object, **common)
     if isinstance(default, str):
         if shown.choices:

@@ -27,7 +27,7 @@ def read_grease_pencil(evaluated: bpy.types.Object, world: np.ndarray) -> list[P
         frame = None if layer.hide else layer.current_frame()
         if frame is not None:
             strokes = _read(frame.drawing.attributes, frame.drawing.curve_offsets, default_type=_POLY)
-            drawn += [_placed(stroke, _layer_matrix(layer, world)) for stroke in strokes]
+            drawn += [_placed(stroke, layer_matrix(layer, world)) for stroke in strokes]
     return _numbered(evaluated, drawn)
 
 
@@ -60,8 +60,8 @@ def _is_filled(material: bpy.types.Material | None) -> bool:
     return not getattr(setting, "is_deprecated", False) and material.grease_pencil.show_fill
 
 
-def _layer_matrix(layer: bpy.types.bpy_struct, world: np.ndarray) -> np.ndarray:
-    """(4, 4), from the layer's space to the object's."""
+def layer_matrix(layer: bpy.types.bpy_struct, world: np.ndarray) -> np.ndarray:
+    """(4, 4), from the layer's space to that of the object with this world matrix (4, 4)."""
     local = np.array(layer.matrix_local, dtype=np.float64)
     if layer.parent is None:
         return local

@@ -31,13 +31,14 @@ class Targets:
 def read_targets(
     obj: bpy.types.Object, outline: Outline, settings: Settings, depsgraph: bpy.types.Depsgraph
 ) -> Targets:
-    """Read what the settings name. Raises ContourError "sizing" where there is no such object or weight.
+    """Read what the settings name. Raises ContourError "sizing" where there is none or it is no number.
 
     Nothing is named between switching a sizing on and choosing what it refers to: that is `unnamed`, and no error.
     """
     weights = near = None
     if settings.use_weight and settings.weight_name:
         points, values = weighted_points(obj, settings.weight_name, depsgraph)
+        _check_finite(values, f"A weight of '{settings.weight_name}'")
         weights = outline.plane.flatten(points), values
     if settings.use_object and settings.object_name:
         ends = _near_ends(settings.object_name, depsgraph)
@@ -61,7 +62,15 @@ def _near_ends(name: str, depsgraph: bpy.types.Depsgraph) -> tuple[np.ndarray, n
     if other is None:
         message = f"The sizing refers to an object, and there is none named '{name}'. Choose one."
         raise tessera.ContourError("sizing", message)
-    return object_edges(other, depsgraph)
+    ends = object_edges(other, depsgraph)
+    _check_finite(np.concatenate(ends), f"A place of '{name}'")
+    return ends
+
+
+def _check_finite(values: np.ndarray, what: str) -> None:
+    if not np.isfinite(values).all():
+        message = f"{what} is not a finite number. Correct it, or choose another for the sizing."
+        raise tessera.ContourError("sizing", message)
 
 
 def sizing_of(settings: Settings, targets: Targets, edge_length: float, automatic: float):

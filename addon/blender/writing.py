@@ -71,10 +71,16 @@ def write_in_place(source: bpy.types.Object, pieces: Sequence[Piece]) -> bpy.typ
 def write_again(target: bpy.types.Object, pieces: Sequence[Piece]) -> None:
     """New geometry into a mesh object: its transform, modifiers, custom properties, and materials stay.
 
-    Where it has no material, it gets those of the pieces.
+    So do vertex groups, which modifiers refer to, but without a vertex, as all are new; shape keys go with the old
+    ones. Where it has no material, it gets those of the pieces.
     """
-    geometry = join(pieces)
+    geometry, groups = join(pieces), [group.name for group in target.vertex_groups]
+    if target.data.shape_keys is not None:
+        target.shape_key_clear()
     target.data.clear_geometry()
+    for name in groups:
+        if name not in target.vertex_groups:
+            target.vertex_groups.new(name=name)
     _fill(target, geometry, target.data)
 
 

@@ -71,6 +71,11 @@ def walk():
     in_view(bpy.ops.ed.undo_redo)  # what Adjust Last Operation does after a change
     yield
     facts["adjusted"] = meshes()
+    remove(bpy.data.objects["Words Mesh"])
+    select("Words")
+    in_view(bpy.ops.tessera.mesh_curve, "INVOKE_DEFAULT", True)
+    yield from until(meshes)
+    facts["length next time"] = bpy.context.window_manager.operators[-1].properties.edge_length
     yield from cancelling()
     yield from failing()
     yield from linking()

@@ -53,9 +53,11 @@ def test_curves_that_are_hidden_are_left_alone_and_open_ones_are_passed_over(tmp
     poly_curve(SQUARE, name="A")
     poly_curve(SQUARE, name="Hidden").hide_set(True)
     poly_curve(SQUARE, name="Path", cyclic=False)
+    poly_curve(SQUARE[:2], name="Line", cyclic=False)
     assert run(tmp_path / "out.blend") == 0
     said = capsys.readouterr()
-    assert "Path: passed over (open): " in said.out and "1 meshed, 1 passed over" in said.err
+    assert "Path: passed over (open): " in said.out and "1 meshed, 2 passed over" in said.err
+    assert "Line: passed over (open): " in said.out
     assert meshes() == ["A Mesh"]
 
 
@@ -143,12 +145,16 @@ def test_a_dry_run_says_what_it_would_do_and_does_nothing(tmp_path, capsys):
     assert f"A: 1 loop, edge length 0.5 -> {tmp_path / 'out.blend'}" in capsys.readouterr().out
     assert run(tmp_path / "out.blend", "--dry-run") == 1
     assert "Broken: failed (too-few-points)" in capsys.readouterr().err
-    assert not list(tmp_path.iterdir()) and meshes() == []
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "floor.blend"))
+    assert run(tmp_path / "out.blend", tmp_path / "floor.blend", "--dry-run") == 1
+    assert f"floor.blend: A: 1 loop, edge length 0.5 -> {tmp_path / 'out.blend'}" in capsys.readouterr().out
+    assert [path.name for path in tmp_path.iterdir()] == ["floor.blend"] and meshes() == []
 
 
 def test_a_file_without_curves_is_a_failure(tmp_path, capsys):
-    assert run(tmp_path / "out.blend") == 1
-    assert "there is no planar closed curve in it" in capsys.readouterr().err
+    for way in ((), ("--dry-run",)):
+        assert run(tmp_path / "out.blend", *way) == 1
+        assert "there is no planar closed curve in it" in capsys.readouterr().err
     assert not (tmp_path / "out.blend").exists()
 
 
@@ -177,7 +183,8 @@ def test_an_output_that_cannot_be_is_said_before_anything_is_meshed(tmp_path, ca
 def test_what_cannot_be_meant_is_an_error_of_usage(tmp_path, capsys, words, said):
     poly_curve(SQUARE, name="A")
     assert run(tmp_path / "out.blend", *words) == 2
-    assert said in capsys.readouterr().err and not list(tmp_path.iterdir())
+    complained = capsys.readouterr().err
+    assert said in complained and complained.count("\n") < 5 and not list(tmp_path.iterdir())
 
 
 def test_an_output_that_fails_is_one_line_and_not_success(tmp_path, capsys):

@@ -81,6 +81,7 @@ def test_a_folder_gives_a_file_for_each_input_and_a_bad_one_does_not_stop_the_re
     (inputs / "b.blend").write_bytes(b"no blend")
     drawing(inputs / "c.svg", '<rect width="90" height="45"/>')
     drawing(inputs / "d.svg", "<title>nothing to see</title>")
+    (inputs / "e.svg").write_text("no drawing")
     (inputs / "notes.txt").write_text("not asked for")
     assert run(inputs, "--output", outputs, "--format", "stl", "--report", report) == 1
     assert sorted(path.name for path in outputs.iterdir() if path.name != ".tessera") == ["a.stl", "c.stl"]
@@ -88,8 +89,10 @@ def test_a_folder_gives_a_file_for_each_input_and_a_bad_one_does_not_stop_the_re
     assert [(record["input"], record["reason"]) for record in failed] == [
         (str(inputs / "b.blend"), "input"),
         (str(inputs / "d.svg"), "nothing"),
+        (str(inputs / "e.svg"), "input"),
     ]
-    assert "b.blend' cannot be read: " in capsys.readouterr().err
+    said = capsys.readouterr().err
+    assert "b.blend' cannot be read: " in said and "e.svg' cannot be read: " in said
 
 
 def test_a_glob_takes_what_it_names(tmp_path):

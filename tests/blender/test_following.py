@@ -157,3 +157,21 @@ def test_one_that_goes_wrong_does_not_keep_the_others(square, timers, monkeypatc
         timers.run()
     timers.run()
     assert right(other) == 2.0 and not is_draft(other)
+
+
+@pytest.mark.parametrize("mode", ["EDIT", "SCULPT"])
+@pytest.mark.parametrize("windowed", [True, False])
+def test_a_mesh_that_is_edited_itself_follows_when_that_ends(square, timers, monkeypatch, mode, windowed):
+    curve, mesh = square
+    monkeypatch.setattr(following, "has_window", lambda: windowed)
+    follow(mesh)
+    timers.run()
+    bpy.ops.object.mode_set(mode=mode)
+    move(curve, 1, 3.0)
+    timers.run()
+    assert right(mesh) == pytest.approx(1.0, abs=1e-5) or mode == "EDIT"
+    assert "is being edited" in mesh.tessera.message
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bpy.context.view_layer.update()
+    timers.run()
+    assert right(mesh) == pytest.approx(3.0, abs=1e-5) and not mesh.tessera.message

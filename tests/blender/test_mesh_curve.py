@@ -326,12 +326,14 @@ BOW_TIE = ((0, 0), (1, 1), (1, 0), (0, 1))
         ("1 point,", SQUARE[:1], {}),
         ("line", ((0, 0, 0), (1, 0, 1), (3, 0, 3)), {"dimensions": "3D"}),
         ("area", ((0, 0), (1, 0), (3, 0)), {}),
+        ("one place", ((1, 2),) * 4, {}),
         ("finite", (*SQUARE[:3], (0.0, math.nan)), {}),
     ],
 )
 def test_a_curve_that_cannot_be_meshed_is_one_clear_report(cause, loop, settings):
     poly_curve(loop, name="Broken", **settings)
-    refuse(cause, edge_length=0.2)
+    for edge_length in (0.2, 0.0):
+        refuse(cause, edge_length=edge_length)
 
 
 def test_an_edge_length_that_cannot_be_is_one_clear_report():

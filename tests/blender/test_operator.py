@@ -187,6 +187,18 @@ def test_a_sizing_without_a_name_has_no_effect_yet_and_says_so(capfd):
     assert "By Object has no effect yet" in said.out + said.err and "By Weight has no effect yet" in said.out + said.err
 
 
+def test_what_a_sizing_refers_to_and_is_no_number_is_one_clear_report():
+    near = bpy.data.objects.new("Near", None)
+    bpy.context.scene.collection.objects.link(near)
+    near.location.y = float("nan")
+    square = poly_curve(SQUARE, name="Square")
+    square.data.splines[0].points[2].radius = float("nan")
+    with pytest.raises(RuntimeError, match=r"^Error: Curve 'Square': .*'Near' .*not a finite number"):
+        bpy.ops.tessera.mesh_curve(use_object=True, object_name="Near")
+    with pytest.raises(RuntimeError, match=r"^Error: Curve 'Square': .*'radius' .*not a finite number"):
+        bpy.ops.tessera.mesh_curve(use_weight=True, weight_name="radius")
+
+
 def test_a_setting_that_is_no_number_is_one_clear_report():
     poly_curve(SQUARE, name="Square")
     with pytest.raises(RuntimeError, match=r"^Error: Curve 'Square': .*must be a positive number"):
@@ -334,6 +346,38 @@ def test_the_point_of_a_failure_can_be_selected():
     selected = [[point.select for point in spline.points] for spline in curve.data.splines]
     assert sum(selected[0]) == 0 and sum(selected[1]) == 1
     assert tuple(bpy.context.scene.cursor.location) == pytest.approx((5.5, 0.5, 3))
+
+
+@pytest.mark.parametrize("draw", [grease_pencil, hair_curves])
+def test_the_point_of_a_strokes_failure_can_be_selected(draw):
+    if bpy.app.version < (4, 3):
+        pytest.skip("its strokes are of another kind")
+    loops = [np.column_stack([np.array(loop) + (x, 0), np.zeros(4)]) for loop, x in ((SQUARE, 0), (BOW_TIE, 5))]
+    obj = draw(*loops)
+    obj.location, obj.rotation_euler = (0, 2, 0), (0, 0, 0.5)
+    if draw is grease_pencil:
+        obj.data.layers[0].translation = (1, 0, 0)
+    bpy.context.view_layer.update()
+    with pytest.raises(RuntimeError, match="crosses or touches itself"):
+        bpy.ops.tessera.mesh_curve()
+    (noted,) = notes.last
+    button = {"object_name": noted.obj, "spline": noted.spline, "place": noted.place}
+    assert noted.spline == 2 and bpy.ops.tessera.select_place(**button) == {"FINISHED"}
+    assert bpy.context.mode == ("EDIT_GREASE_PENCIL" if draw is grease_pencil else "EDIT_CURVES")
+    holder = obj.data if draw is hair_curves else obj.data.layers[0].frames[0].drawing
+    chosen = [point.value for point in holder.attributes[".selection"].data]
+    assert sum(chosen[:4]) == 0 and sum(chosen[4:]) == 1
+
+
+def test_the_vertex_of_a_meshs_failure_is_seen_also_where_faces_are_selected():
+    bpy.ops.mesh.primitive_monkey_add()
+    bpy.context.tool_settings.mesh_select_mode = (False, False, True)
+    with pytest.raises(RuntimeError, match="It is not flat"):
+        bpy.ops.tessera.mesh_curve()
+    (noted,) = notes.last
+    assert bpy.ops.tessera.select_place(object_name=noted.obj, place=noted.place) == {"FINISHED"}
+    assert bpy.context.object.data.total_vert_sel == 1
+    assert tuple(bpy.context.tool_settings.mesh_select_mode) == (True, False, False)
 
 
 def test_a_success_forgets_the_failures_of_before():

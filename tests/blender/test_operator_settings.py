@@ -46,6 +46,13 @@ def test_settings_come_back_from_properties(group):
     assert group.corner_angle == pytest.approx(math.radians(1.5))
 
 
+@pytest.mark.parametrize("operator", ["mesh_curve", "remesh_faces"])
+def test_an_operators_preset_has_every_setting(operator):
+    known = getattr(bpy.ops.tessera, operator).get_rna_type().properties
+    settings = [known[name] for name in table() if name in known]
+    assert len(settings) > 20 and not [each.identifier for each in settings if each.is_skip_preset]
+
+
 def parse(*words):
     parser = argparse.ArgumentParser()
     add_options(parser)

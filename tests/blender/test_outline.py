@@ -89,6 +89,7 @@ def test_counter_clockwise_in_the_plane_faces_the_curves_own_up():
     [
         ([[0, 0, 0], [1, 0, 0], [1, 1, 0.01], [0, 1, 0]], np.eye(3), "not-planar"),
         ([[0, 0, 0], [1, 0, 1], [2, 0, 2]], np.eye(3), "zero-area"),
+        ([[1, 2, 3]] * 4, np.eye(3), "zero-area"),
         ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], np.diag([1.0, 0.0, 1.0]), "zero-area"),
         ([[0, 0, 0], [1, 0, np.nan], [0, 1, 0]], np.eye(3), "not-finite"),
     ],

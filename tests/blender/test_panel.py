@@ -64,6 +64,25 @@ def test_menus_have_the_operators_by_the_words_that_users_search_for(menu, opera
     assert all(word in entry.more["text"].lower() for word in words)
 
 
+@pytest.mark.parametrize("menu", ["VIEW3D_MT_object_convert", "VIEW3D_MT_object_context_menu"])
+def test_the_menus_ask_what_is_selected_and_not_what_is_active(menu):
+    (draw,) = [f for f in getattr(bpy.types, menu).draw._draw_funcs if f.__module__.startswith("addon.")]
+
+    def is_there():
+        holder = type("Menu", (), {"layout": Layout()})()
+        draw(holder, bpy.context)
+        return bool(holder.layout.named("operator"))
+
+    curve = circle()
+    for active in (curve, None):  # None: after Select Objects in the Outliner
+        bpy.context.view_layer.objects.active = active
+        assert is_there()
+    bpy.ops.object.camera_add()
+    assert not is_there() or menu == "VIEW3D_MT_object_convert"  # which search looks through
+    curve.select_set(True)
+    assert is_there()
+
+
 def test_the_sidebar_has_the_numbers_of_the_mesh():
     circle()
     bpy.ops.tessera.mesh_curve(edge_length=0.2)

@@ -82,6 +82,7 @@ def test_an_open_one_of_every_kind_says_which_and_where(name):
     with pytest.raises(OutlineError) as refusal:
         read(obj)
     assert refusal.value.reason == "open" and "is open" in str(refusal.value)
+    assert ("Curve (or Stroke) > Toggle Cyclic" in str(refusal.value)) != name.startswith("MESH")
     assert refusal.value.spline == (0 if name.startswith("MESH") else 2)
     assert refusal.value.point == pytest.approx(loops[1][0])
 

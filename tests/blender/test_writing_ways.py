@@ -113,13 +113,17 @@ def test_again_into_the_same_mesh_its_own_things_stay():
     made.data.materials.append(ink)
     made.modifiers.new("Solidify", "SOLIDIFY")
     made["mine"], made.location, made.data.name = 1, (3, 3, 3), "Kept"
+    made.vertex_groups.new(name="Pinned")
+    made.shape_key_add()
+    made.shape_key_add()
     before = len(made.data.polygons)
     curve.data.splines[0].bezier_points[0].co.x = -2
     write_again(made, meshed(read(curve), 0.1))
     assert len(made.data.polygons) > 2 * before and made.data.name == "Kept"
     assert (made["mine"], tuple(made.location), made.modifiers[0].type) == (1, (3, 3, 3), "SOLIDIFY")
     assert [slot.material for slot in made.material_slots] == [ink]
-    assert [group.name for group in made.vertex_groups] == ["Boundary"]
+    assert [group.name for group in made.vertex_groups] == ["Boundary", "Pinned"]
+    assert made.data.shape_keys is None  # they were of the vertices that are gone
     assert [layer.name for layer in made.data.uv_layers] == ["UVMap"]
     assert len(values(made, "element_quality")) == len(made.data.polygons)
     assert not made.data.validate(verbose=True)

@@ -79,6 +79,7 @@ def _parser() -> argparse.ArgumentParser:
     verbs = parser.add_subparsers(dest="verb", required=True)
     mesh = verbs.add_parser(
         "mesh",
+        usage="%(prog)s [INPUT ...] --output PATH [OPTION ...]",
         help="mesh the planar closed curves and texts of a scene or of files",
         description="Mesh the planar closed curves and texts of the open file, or of each INPUT. A line for each goes "
         "to standard output; progress, warnings and errors go to standard error.",

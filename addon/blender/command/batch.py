@@ -17,7 +17,7 @@ from .files import Job
 from .inputs import InputError, choose, open_file
 from .journal import Journal, drop_arrays, read_done, write_done
 from .outputs import OutputError, write_file
-from .records import Record, failed
+from .records import Record, failed, name_of
 
 
 def mesh_file(job: Job, request: Request, claims: Claims, number: int = 0) -> list[Record]:
@@ -84,8 +84,9 @@ def plan_file(job: Job, request: Request) -> list[Record]:
         if curve.task is None:
             console.show(curve.record)
         else:
-            print(f"{curve.task.obj.name}: {_size(curve.task)} -> {job.target}")
-    return [curve.record for curve in curves if curve.record is not None]
+            print(f"{name_of(job.name, curve.task.obj.name)}: {_size(curve.task)} -> {job.target}")
+    records = [curve.record for curve in curves if curve.record is not None]
+    return records if len(records) < len(curves) else _nothing_said(job, records)
 
 
 def _mesh_opened(job: Job, request: Request, claims: Claims, number: int, journal: Journal) -> list[Record]:
@@ -102,12 +103,18 @@ def _mesh_opened(job: Job, request: Request, claims: Claims, number: int, journa
     records = [curve.record for curve in curves]
     meshed = [curve for curve in curves if curve.record.status == "meshed"]
     if not meshed:
-        if not any(record.status == "failed" for record in records):
-            records.append(failed(job.name, None, "nothing", "there is no planar closed curve in it to mesh"))
-            console.show(records[-1])
-        return records
+        return _nothing_said(job, records)
     write_file(job.target, write(meshed))
     return [replace(each, output=str(job.target)) if each.status == "meshed" else each for each in records]
+
+
+def _nothing_said(job: Job, records: list[Record]) -> list[Record]:
+    """The records of a file of which nothing is meshed; where none of them is a failure, the file is one."""
+    if any(record.status == "failed" for record in records):
+        return records
+    nothing = failed(job.name, None, "nothing", "there is no planar closed curve in it to mesh")
+    console.show(nothing)
+    return [*records, nothing]
 
 
 def _key(job: Job, request: Request, run: str) -> str:

@@ -46,10 +46,14 @@ def choose(names: tuple[str, ...] | None) -> list[bpy.types.Object]:
 
 
 def _open_svg(source: Path) -> None:
-    """An empty file with the curves of an SVG. Its importer is an add-on, which the user may have switched off."""
+    """An empty file with the curves of an SVG. Raises InputError.
+
+    Its importer is an add-on, which the user may have switched off.
+    """
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True, load_ui=False)
     addon_utils.enable("io_curve_svg")
-    bpy.ops.import_curve.svg(filepath=str(source))
+    if bpy.ops.import_curve.svg(filepath=str(source)) != {"FINISHED"}:
+        raise InputError(f"'{source}' cannot be read: it is no SVG file")
 
 
 def _last_line(error: RuntimeError) -> str:

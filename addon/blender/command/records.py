@@ -43,10 +43,8 @@ class Record:
 
     @property
     def name(self) -> str:
-        """For the user: the curve, after its file (without folder), as curves of SVG files have the same names."""
-        if self.object is None:
-            return self.input
-        return self.object if self.input == OPEN_FILE else f"{Path(self.input).name}: {self.object}"
+        """For the user."""
+        return self.input if self.object is None else name_of(self.input, self.object)
 
     @property
     def line(self) -> str:
@@ -57,6 +55,11 @@ class Record:
             time = "meshed earlier" if self.earlier else f"{self.seconds:.2f} s"
             return f"{name}: {self.n_triangles} triangles, {quality}, {time}"
         return f"{name}: {self.status} ({self.reason}): {self.error}"
+
+
+def name_of(source: str, name: str) -> str:
+    """A curve for the user: after its file (without folder), as curves of SVG files have the same names."""
+    return name if source == OPEN_FILE else f"{Path(source).name}: {name}"
 
 
 def failed(source: str, name: str | None, reason: str, error: str, **more) -> Record:

@@ -10,8 +10,7 @@ from ..kinds import is_readable
 from ..layout import draw_settings
 from ..preferences import default_settings
 from ..progress import Steps
-from ..properties import annotations, read_settings, write_setting
-from ..settings import table
+from ..properties import annotations, read_settings, start_with
 from .stepping import Refusal, Stepping
 
 if TYPE_CHECKING:
@@ -38,10 +37,7 @@ class TESSERA_OT_mesh_curve(Stepping, bpy.types.Operator):
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Start with the preferences, where neither a script, a preset nor the last use says anything."""
-        preferred = default_settings()
-        for name in table():
-            if not self.properties.is_property_set(name, ghost=False):
-                write_setting(preferred, name, self)
+        start_with(default_settings(), self)
         return super().invoke(context, event)
 
     def steps(self, context: bpy.types.Context) -> Steps[Batch]:

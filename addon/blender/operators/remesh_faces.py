@@ -8,7 +8,8 @@ import bpy
 
 from ..layout import draw_settings
 from ..progress import Steps
-from ..properties import annotations, read_settings
+from ..properties import annotations, read_settings, start_with
+from ..settings import Settings
 from .stepping import Refusal, Stepping
 
 if TYPE_CHECKING:
@@ -30,6 +31,11 @@ class TESSERA_OT_remesh_faces(Stepping, bpy.types.Operator):
             cls.poll_message_set("Only in the Edit Mode of meshes")
             return False
         return True
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Start with the last use's settings, but for those that rarely suit twice."""
+        start_with(Settings(), self)
+        return super().invoke(context, event)
 
     def steps(self, context: bpy.types.Context) -> Steps[Batch]:
         """Mesh what is selected."""

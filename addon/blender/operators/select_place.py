@@ -19,7 +19,9 @@ class TESSERA_OT_select_place(bpy.types.Operator):
     )
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Activate the object, select the point of a curve or the vertex of a mesh, frame it."""
+        """Activate the object, select its point where it has such, frame it."""
+        from ..selecting import can_select, select_nearest  # here, so that enabling the add-on does not load the mesher
+
         obj = context.view_layer.objects.get(self.object_name)
         if obj is None or not obj.visible_get():
             self.report({"ERROR"}, f"'{self.object_name}' is not to be seen in this view layer. Show it first")
@@ -32,38 +34,12 @@ class TESSERA_OT_select_place(bpy.types.Operator):
             obj.select_set(True)
             context.view_layer.objects.active = obj
         context.scene.cursor.location = self.place
-        if obj.type in {"CURVE", "MESH"} and obj.is_editable and obj.data.is_editable:
+        if can_select(obj):
             at = np.array(obj.matrix_world.inverted_safe() @ Vector(self.place))
-            if obj.type == "CURVE":
-                bpy.ops.object.mode_set(mode="EDIT")
-                _select_in_curve(obj.data, self.spline, at)
-            else:
-                bpy.ops.object.mode_set(mode="OBJECT")
-                _select_in_mesh(obj.data, at)
-                bpy.ops.object.mode_set(mode="EDIT")
+            bpy.ops.object.mode_set(mode="OBJECT")
+            select_nearest(obj, self.spline, at)
         _frame(context)
         return {"FINISHED"}
-
-
-def _select_in_curve(curve: bpy.types.Curve, number: int, at: np.ndarray) -> None:
-    bpy.ops.curve.select_all(action="DESELECT")
-    splines = [curve.splines[number - 1]] if 0 < number <= len(curve.splines) else curve.splines
-    points = [point for spline in splines for point in (spline.bezier_points or spline.points)]
-    if points:
-        nearest = min(points, key=lambda point: np.linalg.norm(np.array(point.co)[:3] - at))
-        name = "select_control_point" if isinstance(nearest, bpy.types.BezierSplinePoint) else "select"
-        setattr(nearest, name, True)
-
-
-def _select_in_mesh(mesh: bpy.types.Mesh, at: np.ndarray) -> None:
-    points = np.empty(3 * len(mesh.vertices), dtype=np.float32)
-    mesh.vertices.foreach_get("co", points)
-    chosen = np.zeros(len(mesh.vertices), dtype=bool)
-    if len(chosen):
-        chosen[np.argmin(np.linalg.norm(points.reshape(-1, 3) - at, axis=1))] = True
-    for items in (mesh.edges, mesh.polygons):
-        items.foreach_set("select", np.zeros(len(items), dtype=bool))
-    mesh.vertices.foreach_set("select", chosen)
 
 
 def _frame(context: bpy.types.Context) -> None:
