@@ -81,7 +81,7 @@ def outline(ring: Tensor, n_contour: Tensor, unit: Tensor) -> Outline:
 
 def decay(exponent: Tensor) -> Tensor:
     """exp, never so near 0 that it is denormal: the processor takes a hundred times as long for such numbers."""
-    return torch.exp(exponent.clamp(min=-80))
+    return torch.exp(exponent.clamp(min=-60))
 
 
 def closeness(squared: Tensor) -> tuple[Tensor, Tensor, Tensor]:

@@ -14,7 +14,7 @@ from torch import Tensor, nn
 from .geometry import AWAY, Outline, area, closeness, even_length, is_real, lower, outline
 from .layers import Attention, Boundary, Encoder, mean_token
 
-PAIRS = 4  # ways in which a grid point hears an edge
+PAIRS = 5  # ways in which a grid point hears an edge
 
 
 class NN1(nn.Module):
@@ -40,7 +40,7 @@ class Scores(nn.Module):
 
     def __init__(self, width: int = 32, narrow: int = 24):
         super().__init__()
-        self.encoder = Encoder(width, 3, layers=0)
+        self.encoder = Encoder(width, 3, layers=1)
         self.value = nn.Linear(width, PAIRS * narrow)
         self.whole = nn.Linear(width, narrow)
         self.second = nn.Parameter(torch.randn(narrow, narrow) / narrow**0.5)
@@ -60,7 +60,7 @@ class Scores(nn.Module):
         foot = torch.minimum(torch.relu(along), shape.ahead[2].unsqueeze(2))
         # Grid points look further than vertices: their rates are smaller.
         wide, middle, narrow = closeness(0.4 * (shape.lifted.transpose(1, 2) @ lowered + foot * (foot - 2 * along)))
-        pairs = torch.cat([wide, middle, narrow, middle * foot], 1)  # (B, N, M) each
+        pairs = torch.cat([wide, middle, narrow, wide * foot, middle * foot], 1)  # (B, N, M) each
         values = torch.cat(self.value(x).chunk(PAIRS, 2), 1)
         whole = self.whole(mean_token(x, n_contour)).transpose(1, 2)
         y = torch.relu(values.transpose(1, 2) @ pairs + whole)

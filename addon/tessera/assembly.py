@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from .cavity import next_vertices
+from .roles import THOROUGH
 from .scheme import contours_in_steps
 from .stars import total_in_turn
 from .steps import Steps
@@ -28,7 +29,8 @@ def mesh_cells(
     (m,); fallbacks of each mesh (c,).
     """
     n_contour = (cells >= 0).sum(axis=1)
-    meshes = yield from contours_in_steps(points[np.maximum(cells, 0)], n_contour, edge_length, watch, more=more)
+    contours = points[np.maximum(cells, 0)]
+    meshes = yield from contours_in_steps(contours, n_contour, edge_length, watch, more=more, roles=THOROUGH)
     n_contour, cells = np.repeat(n_contour, len(more)), np.repeat(cells, len(more), axis=0)
     row, k = np.nonzero(np.arange(meshes.inner.shape[1]) < meshes.n_inner[:, None])
     width = int((n_contour + meshes.n_inner).max(initial=3))

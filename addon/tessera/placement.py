@@ -30,16 +30,19 @@ _MOVED_MARGIN = 0.08  # to the contour and each other that moved vertices must k
 
 
 def place_inner_vertices(
-    contour: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, watch: Stopwatch
+    contour: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, watch: Stopwatch, times: int = 1
 ) -> tuple[np.ndarray, np.ndarray]:
     """Place N_I vertices in each cavity.
 
-    contour: (B, N, 2) float64; n_contour, n_inner: (B,) int64. Returns inner vertices (B, M, 2) and how many each
-    contour has, (B,): fewer than asked for where the cavity is too thin to hold them apart.
+    contour: (B, N, 2) float64; n_contour, n_inner: (B,) int64; times: that NN2's further passes, three in a call, go
+    over what was placed. Returns inner vertices (B, M, 2) and how many each contour has, (B,): fewer than asked for
+    where the cavity is too thin to hold them apart.
     """
     inner, count = place_by_scores(contour, n_contour, n_inner, watch)
+    moved = inner
     with watch("NN2"):
-        moved = networks.move_inner_vertices(contour, n_contour, inner, count)
+        for _ in range(times):
+            moved = networks.move_inner_vertices(contour, n_contour, moved, count)
     with watch("decoding"):
         return _keep_valid(moved, inner, contour, n_contour, count), count
 

@@ -20,13 +20,14 @@ from .relaxation import relax
 from .steps import Progress, Steps, within
 from .stopwatch import Stopwatch
 
-TURNS = 4
-POOR = 0.93  # elements of less quality are worth a try
+TURNS = 8, 4  # in domains of up to `_SMALL` elements, and in larger ones
+POOR = 0.96  # elements of less quality are worth a try
 _MORE = 0, -1, 1  # inner vertices than NN1 asks for
 # What a patch is worth: its worst quality, and so many times its mean; a new one has to be better by the gain. Of those
-# that are worth as much as `_GOOD` already, one in ten would get better, and by little: they are not tried. Those below
-# `_BAD` are; those between only where a domain has more to try than `_FEW` of its elements, or a turn is not worth it.
-_MEAN, _GAIN, _GOOD, _BAD, _FEW = 3, 6e-3, 3.8, 3.6, 1e-3
+# that are worth as much as `_GOOD` already, few would get better, and by little: they are not tried. Those below `_BAD`
+# are; those between only where a domain has more to try than `_FEW` of its elements, or a turn is not worth it. The
+# first of two numbers is for domains of up to `_SMALL` elements, where a try takes no time that a user would feel.
+_MEAN, _GAIN, _GOOD, _BAD, _FEW, _SMALL = 3, 3e-3, (3.95, 3.8), (3.8, 3.6), 1e-3, 5000
 _RELAXED = 0.3  # share of the work that is done after the first relaxation
 
 
@@ -50,17 +51,17 @@ def improve(
     free = off_boundary(triangles, len(vertices), fixed)
     vertices = yield from within(relax(vertices, triangles, domain, free, passes, watch), 0.0, _RELAXED)
     tried = np.zeros(len(vertices), dtype=bool), np.zeros(len(vertices), dtype=bool)
-    for turn in range(TURNS):
+    for turn in range(TURNS[0]):
         quality = element_quality(vertices, triangles)
         contours, patch, kind = find_patches(triangles, quality, free, tried, POOR, fixed)
         if not len(contours):
             break
         for number in (0, 1):
             tried[number][triangles[(patch >= 0) & (kind[patch] == number)]] = True
-        contours, patch = _worthwhile(contours, patch, quality, domain)
+        contours, patch = _worthwhile(contours, patch, quality, domain, turn)
         if not len(contours):
             continue
-        start, end = (_RELAXED + (1 - _RELAXED) * (turn + n) / TURNS for n in (0, 1))
+        start, end = (_RELAXED + (1 - _RELAXED) * (turn + n) / TURNS[0] for n in (0, 1))
         remesh = _remesh(vertices, triangles, domain, quality, contours, patch, sizing, watch)
         found = yield from within(remesh, start, end)
         np.add.at(fallbacks, found.homes, found.fallbacks)
@@ -77,15 +78,16 @@ def improve(
 
 
 def _worthwhile(
-    contours: np.ndarray, patch: np.ndarray, quality: np.ndarray, domain: np.ndarray
+    contours: np.ndarray, patch: np.ndarray, quality: np.ndarray, domain: np.ndarray, turn: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """The contours of patches (c, N), and each element's patch (m,) or -1, without those that are not worth a try."""
     taken = np.flatnonzero(patch >= 0)
     worth = _worth(quality[taken], patch[taken], len(contours))
-    poor = worth < _GOOD
     home = _homes(patch, domain, len(contours))
     n_elements = np.bincount(domain)
-    poor &= (worth < _BAD) | (np.bincount(home[poor], minlength=len(n_elements)) > _FEW * n_elements)[home]
+    good, bad, turns = (np.where(n_elements <= _SMALL, *limits)[home] for limits in (_GOOD, _BAD, TURNS))
+    poor = (worth < good) & (turn < turns)
+    poor &= (worth < bad) | (np.bincount(home[poor], minlength=len(n_elements)) > _FEW * n_elements)[home]
     anew = np.append(np.where(poor, np.cumsum(poor) - 1, -1), -1)
     return contours[poor], anew[patch]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -30,10 +31,12 @@ class Roles:
 
 
 def _place(
-    contour: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, l_s: np.ndarray, watch: Stopwatch
+    times: int, contour: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, l_s: np.ndarray, watch: Stopwatch
 ) -> Arrays:
     """`place_inner_vertices`, which goes by the number alone."""
-    return place_inner_vertices(contour, n_contour, n_inner, watch)
+    return place_inner_vertices(contour, n_contour, n_inner, watch, times)
 
 
-SHIPPED = Roles(networks.count_inner_vertices, _place, networks.rate_connections)
+SHIPPED = Roles(networks.count_inner_vertices, partial(_place, 1), networks.rate_connections)
+# For the cells of domains: NN2's passes go over their vertices twice, as relaxing poor ones later takes longer.
+THOROUGH = Roles(networks.count_inner_vertices, partial(_place, 2), networks.rate_connections)
