@@ -58,6 +58,16 @@ def test_a_network_that_sends_vertices_astray_moves_none(wrong, monkeypatch):
     assert_valid(SQUARE, inner, 6)
 
 
+def test_passes_that_are_asked_twice_see_what_they_gave(monkeypatch):
+    given, move = [], networks.move_inner_vertices
+    monkeypatch.setattr(networks, "move_inner_vertices", lambda *call: given.append(call) or move(*call))
+    n = np.array([4])
+    inner, found = placement.place_inner_vertices(SQUARE, n, np.array([6]), Stopwatch(), times=2)
+    assert len(given) == 2 and found[0] == 6
+    np.testing.assert_array_equal(given[1][2], move(*given[0]))
+    assert_valid(SQUARE, inner, 6)
+
+
 @pytest.mark.parametrize("count", [2, 5, 12, 32])
 def test_scores_cannot_draw_vertices_across_a_notch(count, monkeypatch):
     """Scores that fall towards the tip of a notch, between the grid's points, and a network that moves nothing."""

@@ -4,6 +4,7 @@ import sys
 
 import numpy as np
 import onnx
+import onnxruntime
 import pytest
 import torch
 
@@ -111,3 +112,32 @@ def test_the_scheme_is_better_than_the_reference():
     theirs, _ = evaluate.reference_meshes(points, n_contour, l_s)
     error = (theirs - evaluate.qualities(points, meshes, n_contour)) / theirs
     assert error[:, 0].mean() <= -0.05 and error[:, 1].mean() <= 0.005
+
+
+def test_determinants_are_what_the_error_bound_allows(tmp_path):
+    """The graph that ships, and as its command makes it: products of single precision, in whatever order they add."""
+    from training import determinants
+
+    determinants.export(tmp_path / "determinants.onnx")
+    rng = np.random.default_rng(0)
+    lines, vertices = (rng.uniform(-2, 2, (7, 3, size)).astype(np.float32) for size in (36, 16))
+    exact = lines.astype(np.float64).swapaxes(1, 2) @ vertices.astype(np.float64)
+    for file in (MODELS / "determinants.onnx", tmp_path / "determinants.onnx"):
+        session = onnxruntime.InferenceSession(file, providers=["CPUExecutionProvider"])
+        (found,) = session.run(None, {"lines": lines, "vertices": vertices})
+        np.testing.assert_allclose(found, exact, rtol=0, atol=12 * 2.0**-24 * 4)
+
+
+def test_a_warm_start_takes_what_ships(workplace, monkeypatch):
+    """In a fresh clone, where there is no checkpoint: the weights by their names in the exported file."""
+    (workplace / "onnx_models").mkdir()
+    file = workplace / "onnx_models" / "nn1.onnx"
+    file.write_bytes((MODELS / "nn1.onnx").read_bytes())
+    net = ROLES["nn1"]()
+    net.load_state_dict(train.shipped_weights("nn1"))
+    assert largest_difference(net.eval(), file, "nn1") < TOLERANCE
+    monkeypatch.setattr(sys, "argv", ["train", "nn1", "--steps", "1", "--warm"])
+    train.main()
+    begun = torch.load(workplace / "runs" / "nn1.pt", weights_only=False)["average"]
+    for name, weight in net.state_dict().items():
+        torch.testing.assert_close(begun[name], weight, atol=1e-2, rtol=0)
