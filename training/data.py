@@ -195,10 +195,11 @@ def move_batch(rng: np.random.Generator, examples: Examples) -> tuple[np.ndarray
     return start, n_inner
 
 
-def levels(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray) -> Iterator[tuple[np.ndarray, int]]:
+def levels(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray) -> Iterator[tuple[np.ndarray, int, int]]:
     """The contours of every level of the triangulation's recursion, by the shipped NN3, each alone and transformed.
 
-    points: (B, V, 2), as `triangulate` takes them. Yields points (n, 2), the contour's first, and N_C.
+    points: (B, V, 2), as `triangulate` takes them. Yields points (n, 2), the contour's first, N_C and the level, from
+    0. Contours that need no table are in none.
     """
     asked = []
 
@@ -206,17 +207,21 @@ def levels(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray) -> It
         asked.append(level[:3])
         return connect(*level, Stopwatch())
 
-    triangulate(points, n_contour, n_inner, ask)
-    for vertices, edges, inner in asked:
-        transformed = superimpose(vertices[:, : edges.max()], edges).apply(vertices)
-        for row, (nc, ni) in enumerate(zip(edges.tolist(), inner.tolist(), strict=True)):
-            yield transformed[row, : nc + ni], nc
+    # Contours of up to 32 vertices and larger ones go through the levels separately.
+    large = n_contour + n_inner > 32
+    for rows in (np.flatnonzero(~large), np.flatnonzero(large)):
+        asked.clear()
+        triangulate(points[rows], n_contour[rows], n_inner[rows], ask)
+        for level, (vertices, edges, inner) in enumerate(asked):
+            transformed = superimpose(vertices[:, : edges.max()], edges).apply(vertices)
+            for row, (nc, ni) in enumerate(zip(edges.tolist(), inner.tolist(), strict=True)):
+                yield transformed[row, : nc + ni], nc, level
 
 
 def table_batch(rng: np.random.Generator, examples: Examples) -> dict[str, np.ndarray]:
     """Contours, inner vertices and their calculated connection tables: of the recursion's levels from the first on.
 
-    As many contours as there are examples, first of all those of the first level, and as many of the others, drawn.
+    All contours of the first level, but for those that need no table, and as many of the others, drawn.
     ``table`` is (n, N, V, 2), 0 where no element is possible; beside it is what NN3 is told of the entries of the
     others, in their order.
     """
@@ -224,10 +229,10 @@ def table_batch(rng: np.random.Generator, examples: Examples) -> dict[str, np.nd
     fits = (n_inner > 0) | (examples.n_inner == 0)
     points = join_vertices(examples.contour[fits], examples.n_contour[fits], inner[fits], n_inner[fits])
     contours = list(levels(points, examples.n_contour[fits], n_inner[fits]))
-    whole = int(fits.sum())
-    below = whole + rng.permutation(len(contours) - whole)[:whole]
+    whole = [contour for contour in contours if contour[2] == 0]
+    below = [contour for contour in contours if contour[2] > 0]
     made = []
-    for vertices, nc in contours[:whole] + [contours[number] for number in below]:
+    for vertices, nc, _ in whole + [below[number] for number in rng.permutation(len(below))[: len(whole)]]:
         table = np.zeros((nc, len(vertices), 2))
         if connection_table(np.ascontiguousarray(vertices), nc, len(vertices), table):
             made.append((vertices, nc, table))

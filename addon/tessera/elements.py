@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-_FLAT = np.float32(1e-4)  # twice the area that an element is taken to have at the least
+_FLAT = np.float32(1e-4)  # four times the area that an element is taken to have at the least
+_THINNEST = 1e-12  # area of a contour beside its squared extent
 _LOWEST, _HIGHEST = np.float32(-4), np.float32(5)  # what lengths and cotangents are cut to
 
 
@@ -32,8 +33,9 @@ def describe(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, ent
     int64, sorted (contour, facet, vertex).
     """
     width, total = points.shape[1], int(n_contour.sum())
-    first = np.cumsum(n_contour) - n_contour
-    following = np.arange(1, total + 2)
+    # What goes to onnxruntime is int64, also where numpy's own integers are shorter.
+    first = np.cumsum(n_contour, dtype=np.int64) - n_contour
+    following = np.arange(1, total + 2, dtype=np.int64)
     following[first + n_contour - 1] = first
     following[total] = total
     # Where the contours' vertices are in the rows of points.
@@ -49,7 +51,7 @@ def describe(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, ent
     size = np.diff(begins, append=len(entries))
     start, apex = facets[begins], row * width + vertex
     elements = _elements(x, y, place[start], place[following[start]], apex, begins, size)
-    number = np.full(len(x), total)
+    number = np.full(len(x), total, dtype=np.int64)
     number[place] = np.arange(total)
     return Described(vertices, following, facets, number.take(apex), elements)
 
@@ -57,9 +59,13 @@ def describe(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, ent
 def _even_lengths(
     x: np.ndarray, y: np.ndarray, following: np.ndarray, first: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray
 ) -> np.ndarray:
-    """(B,) as `cavity.even_lengths`, of contours one behind the other (T,), each from its `first` on."""
+    """(B,) as `cavity.even_lengths`, of contours one behind the other (T,), each from its `first` on.
+
+    An area that is nothing beside the contour's extent, or less by rounding, counts as a little of it.
+    """
     area = 0.5 * np.add.reduceat(x * y[following] - y * x[following], first)
-    return np.sqrt(np.maximum(area, 1e-300) * 4 / np.sqrt(3) / (2 * n_inner + n_contour - 2))
+    least = _THINNEST * np.maximum.reduceat(x * x + y * y, first)
+    return np.sqrt(np.maximum(area, least) * 4 / np.sqrt(3) / (2 * n_inner + n_contour - 2))
 
 
 def _vertices(x: np.ndarray, y: np.ndarray, following: np.ndarray, n_contour: np.ndarray) -> np.ndarray:

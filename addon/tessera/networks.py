@@ -72,7 +72,7 @@ def count_inner_vertices(contour: np.ndarray, n_contour: np.ndarray, l_s: np.nda
             None,
             {
                 "contour": rings(contour, n_contour, rows, n),
-                "n_contour": n_contour[rows],
+                "n_contour": n_contour[rows].astype(np.int64),
                 "l_s": known[rows].astype(np.float32),
             },
         )
@@ -102,8 +102,8 @@ def score_grid(
             None,
             {
                 "contour": rings(contour, n_contour, rows, n),
-                "n_contour": n_contour[rows],
-                "n_inner": n_inner[rows],
+                "n_contour": n_contour[rows].astype(np.int64),
+                "n_inner": n_inner[rows].astype(np.int64),
                 "grid": points,
             },
         )
@@ -124,9 +124,9 @@ def move_inner_vertices(
             None,
             {
                 "contour": rings(contour, n_contour, rows, n),
-                "n_contour": n_contour[rows],
+                "n_contour": n_contour[rows].astype(np.int64),
                 "inner": _single(inner, rows, m),
-                "n_inner": n_inner[rows],
+                "n_inner": n_inner[rows].astype(np.int64),
             },
         )
         size = min(m, inner.shape[1])
@@ -193,7 +193,7 @@ def _groups(n_contour: np.ndarray, n_other: np.ndarray, sizes: np.ndarray) -> It
 def rings(contour: np.ndarray, n_contour: np.ndarray, rows: np.ndarray, size: int) -> np.ndarray:
     """Rows of contours as (len(rows), 2, size + 2) float32: the last vertex before the first, the first after the last.
 
-    What is behind that is 0.
+    What is behind that is of no meaning, but finite, as contours' padding is.
     """
     count, width = n_contour[rows], min(size, contour.shape[1])
     out = np.zeros((len(rows), 2, size + 2), dtype=np.float32)

@@ -158,10 +158,11 @@ def _keep_valid(
     return kept
 
 
+@np.errstate(over="ignore", invalid="ignore")  # what is so far away is outside
 def _is_valid(inner: np.ndarray, contour: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray) -> np.ndarray:
     """(B,) whether all inner vertices (B, M, 2) keep their margin to the contour, inside, and to each other.
 
-    Single precision tells, as the margin is far wider.
+    Single precision tells, as the margin is far wider than its rounding for edges of a millionth of the contour's size.
     """
     m = inner.shape[1]
     margin = (_MOVED_MARGIN * even_lengths(contour, n_contour, n_inner)[:, None]).astype(np.float32)

@@ -105,3 +105,13 @@ def test_a_target_far_from_the_contour_s_size(edge_length):
     mesh = tessera.mesh_contour(contour, edge_length)
     check_mesh(mesh.vertices, mesh.triangles, [contour])
     assert bool(mesh.report.warnings) == (edge_length < 1.6)
+
+
+def test_counts_may_be_shorter_integers():
+    """As numpy's own are on Windows before its version 2; the networks take those of 64 bits alone."""
+    angle = 2 * np.pi * np.arange(9) / 9
+    contour, length = np.stack([np.cos(angle), np.sin(angle)], axis=1)[None], np.array([0.5])
+    kinds = np.int32, np.int64
+    one, other = (mesh_contours(contour, np.array([9], dtype=kind), length, Stopwatch()) for kind in kinds)
+    np.testing.assert_array_equal(one.triangles, other.triangles)
+    np.testing.assert_array_equal(one.inner, other.inner)

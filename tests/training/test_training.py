@@ -178,7 +178,8 @@ def test_sub_contours_are_simple_and_keep_all_vertices_inside(shard):
     points = join_vertices(data.contour, data.n_contour, data.inner, data.n_inner)
     found = list(levels(points, data.n_contour, data.n_inner))
     assert len(found) > len(data)
-    for vertices, count in found:
+    assert {level for _, _, level in found} >= {0, 1}
+    for vertices, count, _ in found:
         assert is_inside(vertices[None, count:], vertices[None, :count], np.array([count])).all()
         opposite = np.empty((len(vertices), len(vertices)), np.int64)
         assert meshing.delaunay(vertices, count, len(vertices), opposite)
