@@ -1,7 +1,7 @@
 """The graph by which the triangulation looks along lines: ``python -m training.determinants``. Nothing in it is learnt.
 
-Batched products of small matrices take onnxruntime a quarter of the time that they take numpy, so this step, the
-heaviest of the triangulation, is written as a graph (`tessera.visibility`).
+Batched products of small matrices take onnxruntime a third of the time that they take numpy, so this step, the heaviest
+of the triangulation, is written as a graph (`tessera.visibility`).
 """
 
 from __future__ import annotations

@@ -2,10 +2,10 @@
 
 Every decision of the triangulation is taken from these sides, so no two decisions can contradict each other. They are
 computed once for all levels of the recursion, as batched products of small matrices in single precision, by
-onnxruntime, whose products of such matrices take a quarter of numpy's time; what the error bound leaves open goes to
-`predicates.orientation`. They are kept as words, one bit for each vertex, and one operation
-on words tests a line or a triangle against all vertices at once. Arrays of words that much is done with have the
-contours last, as operations on long rows are fast.
+onnxruntime, whose products of such matrices take a third of numpy's time; what the error bound leaves open goes to
+`predicates.orientation`. They are kept as words, one bit for each vertex, and one operation on words tests a line or a
+triangle against all vertices at once. Arrays of words that much is done with have the contours last, as operations on
+long rows are fast.
 
 Words are unsigned integers or, for more than 64 bits, Python's own in object arrays: the same operators, only slower.
 """
