@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 _PADDED_EDGES = np.array([4, 8, 12, 16, 24, 32, 48, 64])
 _PADDED_INNER = np.array([1, 2, 4, 6, 8, 12, 16, 24, 32])
 _PADDED_GRID = np.array([16, 32, 48, 64, 96, 128, 192, 256, 400, 48 * 48])
+_LEAST_QUALITY = 1e-4  # that NN3's elements are taken to have
 _MOST = 1e9  # inner vertices that NN1 may ask for
 _KNOWN_TARGETS = 0.25, 20.0  # scaled target edge lengths that NN1 is asked about; it has learnt from 0.25 on
 # Points in one call, and entries, so that what a network holds at a time stays in the processor's cache.
@@ -163,7 +164,7 @@ def rate_connections(
     """NN3: values (q_worst, q_mean) (P, 2) float64 of entries of the connection tables.
 
     points: (B, V, 2) contour vertices, then inner vertices, not transformed; entries: (P, 3) int64, sorted (contour,
-    facet, vertex).
+    facet, vertex). Where NN3 sees no good in a contour, its q_mean still tells which of the poor elements to take.
     """
     first = np.searchsorted(entries[:, 0], np.arange(len(points) + 1))
     found = [np.zeros((0, 2))]
@@ -171,7 +172,13 @@ def rate_connections(
         rows = slice(first[part.start], first[part.stop])
         described = describe(points[part], n_contour[part], n_inner[part], entries[rows] - [part.start, 0, 0])
         found += session("nn3").run(None, vars(described))
-    return np.concatenate(found).astype(np.float64)
+    values = np.concatenate(found).astype(np.float64)
+    if len(values):
+        # What is possible has some quality, though less than NN3 may err by.
+        asked = np.flatnonzero(np.diff(first))
+        hopeless = np.maximum.reduceat(values[:, 0], first[asked]) <= 0
+        values[np.repeat(hopeless, np.diff(first)[asked]), 0] = _LEAST_QUALITY
+    return values
 
 
 def _groups(n_contour: np.ndarray, n_other: np.ndarray, sizes: np.ndarray) -> Iterator[tuple[np.ndarray, int, int]]:

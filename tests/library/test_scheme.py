@@ -90,6 +90,22 @@ def test_whatever_a_network_answers_meshes_are_valid(role, answer, monkeypatch):
     check_many(vertices, n_contour, meshes.n_inner, meshes.triangles, meshes.owner)
 
 
+def test_poor_contours_are_led_by_the_table_too(monkeypatch):
+    """Where NN3's q_worst is nowhere above 0, as its error may be larger, it is no fallback."""
+    shipped = networks.session
+
+    class Pessimist:
+        def run(self, _, inputs):
+            return [out - [2, 0] for out in shipped("nn3").run(None, inputs)]
+
+    points, n_contour = sector_contours(3, 30)
+    monkeypatch.setattr(networks, "session", lambda asked: Pessimist() if asked == "nn3" else shipped(asked))
+    meshes = mesh(points, n_contour, np.full(30, 0.4))
+    assert not meshes.fallbacks.any()
+    vertices = join_vertices(points, n_contour, meshes.inner, meshes.n_inner)
+    check_many(vertices, n_contour, meshes.n_inner, meshes.triangles, meshes.owner)
+
+
 @pytest.mark.parametrize("padding", [np.nan, np.inf, -1e300, 0.1])
 def test_padding_is_of_any_value(padding):
     points, n_contour = sector_contours(4, 30)
