@@ -25,7 +25,12 @@ def areas(contour: np.ndarray, n_contour: np.ndarray) -> np.ndarray:
 
 def even_lengths(contour: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray) -> np.ndarray:
     """(B,) edge length of the equilateral elements, 2 N_I + N_C - 2 of them, that would fill each cavity."""
-    return np.sqrt(np.maximum(areas(contour, n_contour), 1e-300) * 4 / np.sqrt(3) / (2 * n_inner + n_contour - 2))
+    return even_lengths_of(np.maximum(areas(contour, n_contour), 1e-300), n_contour, n_inner)
+
+
+def even_lengths_of(area: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray) -> np.ndarray:
+    """`even_lengths` of cavities of known areas (B,), above 0."""
+    return np.sqrt(area * 4 / np.sqrt(3) / (2 * n_inner + n_contour - 2))
 
 
 def is_inside(points: np.ndarray, contour: np.ndarray, n_contour: np.ndarray) -> np.ndarray:

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .cavity import even_lengths_of
+
 _FLAT = np.float32(1e-4)  # four times the area that an element is taken to have at the least
 _THINNEST = 1e-12  # area of a contour beside its squared extent
 _LOWEST, _HIGHEST = np.float32(-4), np.float32(5)  # what lengths and cotangents are cut to
@@ -65,7 +67,7 @@ def _even_lengths(
     """
     area = 0.5 * np.add.reduceat(x * y[following] - y * x[following], first)
     least = _THINNEST * np.maximum.reduceat(x * x + y * y, first)
-    return np.sqrt(np.maximum(area, least) * 4 / np.sqrt(3) / (2 * n_inner + n_contour - 2))
+    return even_lengths_of(np.maximum(area, least), n_contour, n_inner)
 
 
 def _vertices(x: np.ndarray, y: np.ndarray, following: np.ndarray, n_contour: np.ndarray) -> np.ndarray:

@@ -26,7 +26,7 @@ _MORE = 0, -1, 1  # inner vertices than NN1 asks for
 # What a patch is worth: its worst quality, and so many times its mean; a new one has to be better by the gain. Of those
 # that are worth as much as `_GOOD` already, few would get better, and by little: they are not tried. Those below `_BAD`
 # are; those between only where a domain has more to try than `_FEW` of its elements, or a turn is not worth it. The
-# first of two numbers is for domains of up to `_SMALL` elements, where a try takes no time that a user would feel.
+# first of two numbers is for domains of up to `_SMALL` elements, which take about a second at the most with all tries.
 _MEAN, _GAIN, _GOOD, _BAD, _FEW, _SMALL = 3, 3e-3, (3.95, 3.8), (3.8, 3.6), 1e-3, 5000
 _RELAXED = 0.3  # share of the work that is done after the first relaxation
 

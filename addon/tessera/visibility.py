@@ -75,17 +75,16 @@ def vertex_sides(points: np.ndarray, n_vertices: np.ndarray) -> np.ndarray:
     vertices[:, :2, :width] = (coordinates - middle) / np.where(half > 0, half, 1) * present[:, None]
     vertices[:, 2, :width] = present
     # Each line is looked at in one direction.
-    ends = np.triu_indices(width, 1)
-    n_lines = len(ends[0])
+    u, v = np.triu_indices(width, 1)
+    n_lines = len(u)
     # Left of all lines, right of them, and nothing.
     words = np.zeros((n_rows, 2 * n_lines + 1), dtype=bits.dtype)
     block = max(1, _BLOCK_SIZE // (n_lines * vertices.shape[2]))
     for first in range(0, n_rows, block):
         rows = slice(first, first + block)
-        determinant = _determinants(vertices[rows], *ends)
+        determinant = _determinants(vertices[rows], u, v)
         words[rows, :n_lines] = pack_words(determinant > _ERROR_BOUND, bits.dtype)
         words[rows, n_lines:-1] = pack_words(determinant < -_ERROR_BOUND, bits.dtype)
-    u, v = ends
     _decide_doubtful(words[:, :n_lines], words[:, n_lines:-1], points, u, v, present, bits)
     place = np.full((width, width, 2), 2 * n_lines)
     place[v, u, 0] = place[u, v, 1] = np.arange(n_lines)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 import tessera
-from benchmarks.domains.cases import airfoil, circle, plate, target_of
+from benchmarks.domains.cases import paper_cases, target_of
 from benchmarks.domains.measures import measure
 from benchmarks.domains.meshers import Meshed
 
@@ -30,7 +30,7 @@ def mesh_all(config: dict) -> None:
     q_left_out: of the element in the airfoil's sharp tail, which q_worst leaves out; None where none is left out.
     """
     found, arrays = [], {}
-    for case in (circle(0.102), airfoil(), plate()):
+    for case in paper_cases():
         mesh = tessera.mesh(case.loops, case.edge_length, **case.options)
         of = measure(Meshed(mesh.vertices, mesh.triangles, 0.0), target_of(case), case.left_out)
         row = {"name": case.name, "paper": case.paper, "q_worst": of.q_worst, "q_mean": of.q_mean}
