@@ -100,7 +100,8 @@ def _slope(u: np.ndarray, v: np.ndarray, real: np.ndarray) -> np.ndarray:
     """(2, S) the derivative of each star's energy by its centre. u, v: (2, R, S) from there to the ends of elements."""
     (ux, uy), (vx, vy) = u, v
     # u² + v² + (u - v)²
-    squares = np.maximum(2 * (ux * ux + uy * uy + vx * vx + vy * vy - ux * vx - uy * vy), 1e-300)
+    # At least so much that its square is above 0.
+    squares = np.maximum(2 * (ux * ux + uy * uy + vx * vx + vy * vy - ux * vx - uy * vy), 1e-150)
     double = ux * vy - uy * vx
     by_area = np.stack([uy - vy, vx - ux])
     by_squares = -2 * (u + v)

@@ -45,6 +45,17 @@ def test_a_vertex_finds_the_middle():
     assert len(smooth(np.zeros((0, 2)), np.zeros((0, 3), dtype=int), 3)) == 0
 
 
+def test_a_neighbour_that_is_next_to_the_vertex():
+    """It stands for a ring's padding too, beside a larger ring: an element without any side, which has no say."""
+    seven = 5 + np.array([[np.cos(a), np.sin(a)] for a in np.arange(7) * 2 * np.pi / 7])
+    vertices = np.concatenate([HEXAGON, [[0.0, 0.0]], seven, [[5.3, 5.1]]])
+    vertices[0] = 1e-200, 0
+    triangles = np.array([[k, (k + 1) % 6, 6] for k in range(6)] + [[7 + k, 7 + (k + 1) % 7, 14] for k in range(7)])
+    found = smooth(vertices, triangles, 20)
+    assert np.isfinite(found).all()
+    np.testing.assert_allclose(found[14], [5, 5], atol=0.01)
+
+
 @pytest.mark.parametrize("scale", [1e-99, 1e-6, 1e6, 1e99])
 def test_the_scale_does_not_matter(scale):
     vertices = np.concatenate([HEXAGON, [[0.5, 0.2]]])
