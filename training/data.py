@@ -222,8 +222,8 @@ def table_batch(rng: np.random.Generator, examples: Examples) -> dict[str, np.nd
     """Contours, inner vertices and their calculated connection tables: of the recursion's levels from the first on.
 
     All contours of the first level, but for those that need no table, and as many of the others, drawn.
-    ``table`` is (n, N, V, 2), 0 where no element is possible; beside it is what NN3 is told of the entries of the
-    others, in their order.
+    ``table`` is (n, N, V, 2), 0 where NN3 is told of no element; beside it is what it is told of the others, in their
+    order.
     """
     inner, n_inner = move_batch(rng, examples)
     fits = (n_inner > 0) | (examples.n_inner == 0)
@@ -242,4 +242,7 @@ def table_batch(rng: np.random.Generator, examples: Examples) -> dict[str, np.nd
     for row, (vertices, nc, table) in enumerate(made):
         points[row, : len(vertices)], tables[row, :nc, : len(vertices)] = vertices, table
     entries = np.argwhere((tables > 0).any(-1))
-    return {"table": tables, **vars(describe(points, n_contour, size - n_contour, entries))}
+    told, described = describe(points, n_contour, size - n_contour, entries)
+    table, place = np.zeros_like(tables), tuple(entries[told].T)
+    table[place] = tables[place]
+    return {"table": table, **vars(described)}

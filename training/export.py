@@ -62,7 +62,7 @@ def sample(rng: np.random.Generator, batch: int, edges: int, vertices: int) -> d
     inner = rng.uniform(-0.5, 0.5, (batch, vertices, 2))
     points = join_vertices(contour, n_contour.numpy(), inner, n_inner.numpy())
     entries = np.unique(np.stack([row, facet, vertex]), axis=1).T
-    described = describe(points, n_contour.numpy(), n_inner.numpy(), entries)
+    _, described = describe(points, n_contour.numpy(), n_inner.numpy(), entries)
     return {
         "ring": torch.tensor(np.concatenate([contour[:, -1:], contour, contour[:, :1]], axis=1).T, dtype=torch.float32),
         "share": torch.full((edges, batch), 1 / edges),

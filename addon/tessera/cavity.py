@@ -9,10 +9,10 @@ import numpy as np
 
 
 def next_vertices(contour: np.ndarray, n_contour: np.ndarray) -> np.ndarray:
-    """(B, N, 2) the end of the edge that starts at each contour vertex."""
-    index = np.arange(contour.shape[1])
-    after = np.where(index + 1 < n_contour[:, None], index + 1, 0)
-    return contour[np.arange(len(contour))[:, None], after]
+    """(B, N, 2) the end of the edge that starts at each contour vertex; of padding, any vertex."""
+    after = np.roll(contour, -1, axis=1)
+    after[np.arange(len(contour)), n_contour - 1] = contour[:, 0]
+    return after
 
 
 def areas(contour: np.ndarray, n_contour: np.ndarray) -> np.ndarray:
@@ -35,26 +35,34 @@ def even_lengths_of(area: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray
 
 def is_inside(points: np.ndarray, contour: np.ndarray, n_contour: np.ndarray) -> np.ndarray:
     """(B, M) whether points (B, M, 2) are inside their contour, by the even-odd rule, in floating point."""
-    x, y, (ax, ay), (bx, by) = _points_and_edges(points, contour, n_contour)
-    straddles = ((ay > y) != (by > y)) & (np.arange(contour.shape[1]) < n_contour[:, None])[:, None]
-    side = (bx - ax) * (y - ay) - (by - ay) * (x - ax)
-    return np.bitwise_xor.reduce(straddles & ((side > 0) == (by > ay)), axis=-1)
+    return _is_inside(*_points_and_edges(points, contour, n_contour)).T
 
 
-def distances_to_contour(points: np.ndarray, contour: np.ndarray, n_contour: np.ndarray) -> np.ndarray:
-    """(B, M) distance of points (B, M, 2) to the closest edge of their contour."""
-    x, y, (ax, ay), (bx, by) = _points_and_edges(points, contour, n_contour)
+def signed_distances(points: np.ndarray, contour: np.ndarray, n_contour: np.ndarray) -> np.ndarray:
+    """(B, M) distance of points (B, M, 2) to the closest edge of their contour, negative where they are not inside."""
+    (x, y), (ax, ay), (bx, by) = place = _points_and_edges(points, contour, n_contour)
     ex, ey, px, py = bx - ax, by - ay, x - ax, y - ay
-    along = np.clip((px * ex + py * ey) / np.maximum(ex * ex + ey * ey, np.finfo(ex.dtype).tiny), 0, 1)
+    along = (px * ex + py * ey) / np.maximum(ex * ex + ey * ey, np.finfo(ex.dtype).tiny)
+    np.minimum(np.maximum(along, 0, out=along), 1, out=along)
     px -= along * ex
     py -= along * ey
-    square = px * px + py * py
-    square[np.broadcast_to((np.arange(contour.shape[1]) >= n_contour[:, None])[:, None], square.shape)] = np.inf
-    return np.sqrt(square.min(axis=-1))
+    away = np.sqrt((px * px + py * py).min(axis=0))
+    return np.where(_is_inside(*place), away, -away).T
 
 
 def _points_and_edges(points: np.ndarray, contour: np.ndarray, n_contour: np.ndarray) -> tuple[np.ndarray, ...]:
-    """x and y of points (B, M, 1), of edges' starts (2, B, 1, N) and of their ends."""
-    x, y = np.moveaxis(points, -1, 0)[..., None]
-    start, end = (np.moveaxis(ends, -1, 0)[:, :, None] for ends in (contour, next_vertices(contour, n_contour)))
-    return x, y, start, end
+    """x and y of points (2, M, B), of edges' starts (2, N, 1, B) and of their ends; long rows are fast.
+
+    Padding is from the first vertex to itself.
+    """
+    real = (np.arange(contour.shape[1]) < n_contour[:, None])[..., None]
+    ends = contour, next_vertices(contour, n_contour)
+    start, end = (np.ascontiguousarray(np.where(real, of, contour[:, :1]).T)[:, :, None] for of in ends)
+    return np.ascontiguousarray(points.T), start, end
+
+
+def _is_inside(points: np.ndarray, start: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """(M, B) by the even-odd rule; of `_points_and_edges`."""
+    (x, y), (ax, ay), (bx, by) = points, start, end
+    side = (bx - ax) * (y - ay) - (by - ay) * (x - ax)
+    return np.bitwise_xor.reduce(((ay > y) != (by > y)) & ((side > 0) == (by > ay)), axis=0)

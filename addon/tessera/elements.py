@@ -2,6 +2,8 @@
 
 They do not change when a contour is moved, turned or scaled, so it needs no transformation. Lengths are in units of the
 even edge length. Contours and entries of a batch are put behind each other, without padding.
+
+It is told of a third of all entries only, those of the bluntest apexes: the best one is hardly ever among the others.
 """
 
 from __future__ import annotations
@@ -12,7 +14,10 @@ import numpy as np
 
 from .cavity import even_lengths_of
 
-_FLAT = np.float32(1e-4)  # four times the area that an element is taken to have at the least
+# An entry is told of if the cotangent of its apex angle is larger than its facet's smallest by no more than this; the
+# smallest is that of the constrained Delaunay triangulation.
+_BLUNT = np.float32(1)
+_FLAT = np.float32(5e-5)  # twice the area that an element is taken to have at the least
 _THINNEST = 1e-12  # area of a contour beside its squared extent
 _LOWEST, _HIGHEST = np.float32(-4), np.float32(5)  # what lengths and cotangents are cut to
 
@@ -28,10 +33,12 @@ class Described:
     elements: np.ndarray  # (8, P) float32: quality and its square, sides, cotangent at the apex, both beside the best
 
 
-def describe(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, entries: np.ndarray) -> Described:
-    """Describe contours and entries.
+def describe(
+    points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, entries: np.ndarray
+) -> tuple[np.ndarray, Described]:
+    """Which of the entries NN3 is told of, (P,) of their numbers, and what.
 
-    points: (B, V, 2) float64, each row n_contour vertices of a contour, n_inner inner ones, padding; entries: (P, 3)
+    points: (B, V, 2) float64, each row n_contour vertices of a contour, n_inner inner ones, padding; entries: (n, 3)
     int64, sorted (contour, facet, vertex).
     """
     width, total = points.shape[1], int(n_contour.sum())
@@ -43,19 +50,16 @@ def describe(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, ent
     # Where the contours' vertices are in the rows of points.
     place = np.repeat(width * np.arange(len(points)) - first, n_contour) + np.arange(total)
     # From the first vertex, so that single precision is enough far from the origin too.
-    x, y = np.moveaxis(points - points[:, :1], 2, 0)
+    x, y = (points[..., axis] - points[:, :1, axis] for axis in (0, 1))
     unit = _even_lengths(x.take(place), y.take(place), following[:-1], first, n_contour, n_inner)
     x, y = ((of / unit[:, None]).astype(np.float32).ravel() for of in (x, y))
     vertices = _vertices(x[place], y[place], following[:-1], np.repeat(n_contour, n_contour))
     row, facet, vertex = entries.T
-    facets = first[row] + facet
-    begins = np.flatnonzero(np.diff(facets, prepend=-1))
-    size = np.diff(begins, append=len(entries))
-    start, apex = facets[begins], row * width + vertex
-    elements = _elements(x, y, place[start], place[following[start]], apex, begins, size)
+    facets, apex = first[row] + facet, row * width + vertex
+    blunt, elements = _elements(x, y, place, following, facets, apex)
     number = np.full(len(x), total, dtype=np.int64)
     number[place] = np.arange(total)
-    return Described(vertices, following, facets, number.take(apex), elements)
+    return blunt, Described(vertices, following, facets[blunt], number.take(apex[blunt]), elements)
 
 
 def _even_lengths(
@@ -86,41 +90,37 @@ def _vertices(x: np.ndarray, y: np.ndarray, following: np.ndarray, n_contour: np
 
 
 def _elements(
-    x: np.ndarray,
-    y: np.ndarray,
-    start: np.ndarray,
-    end: np.ndarray,
-    apex: np.ndarray,
-    begins: np.ndarray,
-    size: np.ndarray,
-) -> np.ndarray:
-    """(8, P) of elements on f facets, from vertices start to end (f,) of those at x, y, with apexes (P,).
+    x: np.ndarray, y: np.ndarray, place: np.ndarray, following: np.ndarray, facets: np.ndarray, apex: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The numbers (P,) of the blunt ones of elements on facets, from contour vertex `facets` (n,) on, and (8, P) of them.
 
-    begins, size: (f,) where each facet's elements begin, and how many they are. The cotangent at the apex is the
-    facet's smallest in the constrained Delaunay triangulation.
+    x, y: where the vertices are; apex (n,) of those; place (T,), following: where the contours' vertices are among
+    them, and which comes after each.
     """
     if not len(apex):
-        return np.zeros((8, 0), dtype=np.float32)
-    along_x, along_y = x[end] - x[start], y[end] - y[start]
-    base = np.repeat(along_x * along_x + along_y * along_y, size)
-    ax, ay = x.take(apex) - np.repeat(x[start], size), y.take(apex) - np.repeat(y[start], size)
-    along_x, along_y = np.repeat(along_x, size), np.repeat(along_y, size)
-    left, twice = ax * ax + ay * ay, along_x * ay - along_y * ax
-    ax -= along_x
-    ay -= along_y
-    right = ax * ax + ay * ay
-    around = left + right
-    quality = twice / (around + base + np.float32(1e-9))
+        return np.zeros(0, dtype=np.int64), np.zeros((8, 0), dtype=np.float32)
+    changes = np.append(True, facets[1:] != facets[:-1])
+    begins, facet = np.flatnonzero(changes), np.cumsum(changes) - 1
+    start, end = place[facets[begins]], place[following[facets[begins]]]
+    start_x, start_y, along_x, along_y = x[start], y[start], x[end] - x[start], y[end] - y[start]
+    ax, ay = x.take(apex) - start_x.take(facet), y.take(apex) - start_y.take(facet)
+    bx, by = ax - along_x.take(facet), ay - along_y.take(facet)
+    twice = ax * by - ay * bx
+    cotangent = (ax * bx + ay * by) / np.maximum(twice, _FLAT)
+    beyond = cotangent - np.minimum.reduceat(cotangent, begins).take(facet)
+    blunt = np.flatnonzero(beyond <= _BLUNT)
+    ax, ay, bx, by, twice, facet = (of.take(blunt) for of in (ax, ay, bx, by, twice, facet))
+    left, right, base = ax * ax + ay * ay, bx * bx + by * by, (along_x * along_x + along_y * along_y).take(facet)
+    quality = twice / (left + right + base + np.float32(1e-9))
     quality *= np.float32(2 * 3**0.5)
-    cotangent = (around - base) / np.maximum(twice + twice, _FLAT)
-    least, best = np.minimum.reduceat(cotangent, begins), np.maximum.reduceat(quality, begins)
-    found = np.empty((8, len(apex)), dtype=np.float32)
+    found = np.empty((8, len(blunt)), dtype=np.float32)
     found[0] = quality
     np.multiply(quality, quality, out=found[1])
-    for place, squared in enumerate((left, right, base), 2):
-        np.sqrt(squared, out=found[place])
-    found[5] = np.maximum(cotangent, _LOWEST)
-    np.subtract(cotangent, np.repeat(least, size), out=found[6])
+    for row, squared in enumerate((left, right, base), 2):
+        np.sqrt(squared, out=found[row])
+    found[5] = np.maximum(cotangent.take(blunt), _LOWEST)
+    found[6] = beyond.take(blunt)
     np.minimum(found[2:7], _HIGHEST, out=found[2:7])
-    np.subtract(np.repeat(best, size), quality, out=found[7])
-    return found
+    size = np.bincount(facet)
+    np.subtract(np.maximum.reduceat(quality, np.cumsum(size) - size).take(facet), quality, out=found[7])
+    return blunt, found

@@ -31,28 +31,37 @@ def score_entries(
     An entry is acceptable if its q_worst is finite and positive, and its element not flat; others are at most 0. Rows
     without any are returned too (s,): there each facet's bluntest apexes count, by the element's own quality.
     """
-    row, facet, vertex = entries
     n_facets, width = int(n_contour.max()), points.shape[1]
-    flat, first = np.ascontiguousarray(points).view(np.complex128).reshape(-1), row * width
-    end = facet + 1
-    end[end == n_contour[row]] = 0
-    corners = flat.take(first + facet), flat.take(first + end), flat.take(first + vertex)
-    own = quality(*corners)
-    worst, mean = np.where(np.isfinite(values), values, 0).T
-    acceptable = (worst > 0) & (own > FLAT)
-    stuck = np.bincount(row, acceptable, len(points)) == 0
-    value = np.minimum(worst, own) + np.clip(mean, 0, 1) + OWN_WEIGHT * own
-    value = np.where(acceptable, value, -1)
+    row, facet, vertex = entries
+    place = (row * n_facets + facet) * width + vertex
+    scores = np.zeros(len(points) * n_facets * width, dtype=np.int32)
+    (hopeful,) = np.nonzero((values[:, 0] > 0) & (values[:, 0] < np.inf))
+    own = quality(*_corners(points, n_contour, entries[:, hopeful]))
+    hopeful, own = hopeful[own > FLAT], own[own > FLAT]
+    worst, mean = values[hopeful].T
+    value = np.minimum(worst, own) + np.clip(np.where(np.isfinite(mean), mean, 0), 0, 1) + OWN_WEIGHT * own
+    scores[place[hopeful]] = (value * 2**BITS).astype(np.int32) + 1
+    stuck = np.bincount(row[hopeful], minlength=len(points)) == 0
     (left,) = np.nonzero(stuck[row])
     if len(left):
-        blunt = _is_bluntest(*(corner[left] for corner in corners), row[left] * n_facets + facet[left])
+        corners = _corners(points, n_contour, entries[:, left])
+        (blunt,) = np.nonzero(_is_bluntest(*corners, row[left] * n_facets + facet[left]))
+        left, own = left[blunt], quality(*corners)[blunt]
         # Beside the best of the contour, so that flat elements are told apart too.
         best = np.zeros(len(points))
-        np.maximum.at(best, row[left], own[left])
-        value[left] = np.where(blunt, own[left] / np.maximum(best[row[left]], np.finfo(float).tiny), -1)
-    scores = np.zeros(len(points) * n_facets * width, dtype=np.int32)
-    scores[(row * n_facets + facet) * width + vertex] = (value * 2**BITS).astype(np.int32) + 1
+        np.maximum.at(best, row[left], own)
+        value = own / np.maximum(best[row[left]], np.finfo(float).tiny)
+        scores[place[left]] = (value * 2**BITS).astype(np.int32) + 1
     return scores.reshape(-1, n_facets, width), np.flatnonzero(stuck)
+
+
+def _corners(points: np.ndarray, n_contour: np.ndarray, entries: np.ndarray) -> tuple[np.ndarray, ...]:
+    """The corners (p,) of entries' elements, complex numbers, the apex last."""
+    row, facet, vertex = entries
+    end = facet + 1
+    end[end == n_contour[row]] = 0
+    flat, first = np.ascontiguousarray(points).view(np.complex128).reshape(-1), row * points.shape[1]
+    return flat.take(first + facet), flat.take(first + end), flat.take(first + vertex)
 
 
 def quality(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:

@@ -54,48 +54,50 @@ def make_grids(contour: np.ndarray, n_contour: np.ndarray, margin: np.ndarray, r
     end = next_vertices(start, n_contour)
     padding = np.arange(contour.shape[1]) >= n_contour[:, None]
     start[padding] = end[padding] = _FAR
-    closest = (margin / spacing).astype(np.float32)[:, None] ** 2
-    admissible = np.empty((len(contour), resolution**2), dtype=bool)
+    # Contours are the last axis, as operations on long rows are fast.
+    start, end = np.ascontiguousarray(start.T), np.ascontiguousarray(end.T)
+    closest = (margin / spacing).astype(np.float32) ** 2
+    admissible = np.empty((resolution, resolution, len(contour)), dtype=bool)
     step = max(1, _BLOCK_SIZE // (contour.shape[1] * resolution**2))
     for first in range(0, len(contour), step):
         rows = slice(first, first + step)
-        away = _squared_distances(start[rows], end[rows], resolution)
-        np.logical_and(_is_inside(start[rows], end[rows], resolution), away > closest[rows], out=admissible[rows])
-    return Grids(resolution, middle, spacing, admissible)
+        away = _squared_distances(start[..., rows], end[..., rows], resolution)
+        inside = _is_inside(start[..., rows], end[..., rows], resolution)
+        np.logical_and(inside, away > closest[rows], out=admissible[..., rows])
+    return Grids(resolution, middle, spacing, np.ascontiguousarray(admissible.reshape(-1, len(contour)).T))
 
 
 def _squared_distances(start: np.ndarray, end: np.ndarray, resolution: int) -> np.ndarray:
-    """(B, R²) squared distances of grid points to the closest of the edges from start to end (B, N, 2).
+    """(R, R, B) squared distances of grid points to the closest of the edges from start to end (2, N, B).
 
     Element by element: a product of matrices may round differently from one size of batch to another. What depends on
-    a point's column alone, or on its row, is (B, N, R), and added where it is wanted.
+    a point's column alone, or on its row, is (N, R, B), and added where it is wanted.
     """
-    edge = end - start
-    length = np.sqrt((edge * edge).sum(axis=-1, keepdims=True))
-    unit = edge / np.maximum(length, np.float32(1e-30))
-    away, rise = steps(resolution) - start[..., :1], steps(resolution) - start[..., 1:]
-    along = (away * unit[..., :1])[:, :, None] + (rise * unit[..., 1:])[..., None]
+    (edge_x, edge_y), grid = end - start, steps(resolution)[:, None]
+    length = np.sqrt(edge_x * edge_x + edge_y * edge_y)
+    shortest = np.maximum(length, np.float32(1e-30))
+    away, rise = grid - start[:, :, None]
+    along = (away * (edge_x / shortest)[:, None])[:, None] + (rise * (edge_y / shortest)[:, None])[:, :, None]
     foot = np.maximum(along, np.float32(0))
-    np.minimum(foot, length[..., None], out=foot)
+    np.minimum(foot, length[:, None, None], out=foot)
     # |point - start|² + foot (foot - 2 along)
     along *= np.float32(-2)
     along += foot
     along *= foot
-    along += (away * away)[:, :, None]
-    along += (rise * rise)[..., None]
-    return along.min(axis=1).reshape(len(start), -1)
+    along += (away * away)[:, None]
+    along += (rise * rise)[:, :, None]
+    return along.min(axis=0)
 
 
 def _is_inside(start: np.ndarray, end: np.ndarray, resolution: int) -> np.ndarray:
-    """(B, R²) whether grid points are inside, by the even-odd rule; a row of the grid is a word, a point a bit."""
-    rows, (x, y) = steps(resolution), np.moveaxis(start, -1, 0)[..., None]
+    """(R, R, B) whether grid points are inside, by the even-odd rule; a row of the grid is a word, a point a bit."""
+    rows, (x, y), (end_x, end_y) = steps(resolution)[:, None], start[:, :, None], end[:, :, None]
     # Both edges at a vertex compare the same number, so that a row through it passes one of them or both or none.
-    straddles = (rows < y) != (rows < end[..., 1:])  # (B, N, R)
-    across, up = end[..., :1] - x, end[..., 1:] - y
-    crossing = x + (rows - y) * (across / np.where(up == 0, np.float32(1), up))
+    straddles = (rows < y) != (rows < end_y)  # (N, R, B)
+    up = end_y - y
+    crossing = x + (rows - y) * ((end_x - x) / np.where(up == 0, np.float32(1), up))
     # Points of the row that are left of the crossing: the lowest bits.
     left = np.clip(np.ceil(crossing + np.float32((resolution - 1) / 2)), 0, resolution).astype(np.uint64)
     words = np.where(straddles, (np.uint64(1) << left) - np.uint64(1), np.uint64(0))
-    parity = np.bitwise_xor.reduce(words, axis=1)
-    bits = (parity[..., None] >> np.arange(resolution, dtype=np.uint64)) & np.uint64(1)
-    return bits.astype(bool).reshape(len(start), -1)
+    parity = np.bitwise_xor.reduce(words, axis=0)
+    return (parity[:, None] & (np.uint64(1) << np.arange(resolution, dtype=np.uint64))[:, None]) != 0

@@ -46,10 +46,15 @@ def compatible(
     its own vertex and that one's bit.
     """
     k, n = facet.shape
-    overlap = closed[facet[:, None], np.arange(k)[:, None], np.arange(n)] & chosen[:, None] != 0
-    overlap &= np.tri(k, k=-1, dtype=bool)[..., None]
-    follows = (facet[:, None] == end) & (vertex == end[:, None]) & (vertex[:, None] == facet)
-    precedes = (end[:, None] == facet) & (vertex[:, None] == end) & (vertex == facet[:, None])
+    # Each entry with all better ones, by the entry.
+    one, other = np.tril_indices(k, -1)
+    overlap = closed[facet[one], other[:, None], np.arange(n)] & chosen[one] != 0
+    follows = (facet[one] == end[other]) & (vertex[other] == end[one]) & (vertex[one] == facet[other])
+    precedes = (end[one] == facet[other]) & (vertex[one] == end[other]) & (vertex[other] == facet[one])
     same = overlap & (follows | precedes)
-    stopped = np.logical_or.accumulate((overlap & ~same).any(axis=1), axis=0)
-    return ~stopped & ~same.any(axis=1)
+    of_each = np.arange(1, k) * np.arange(k - 1) // 2
+    taken = np.ones((k, n), dtype=bool)
+    if k > 1:
+        taken[1:] = ~np.logical_or.accumulate(np.logical_or.reduceat(overlap & ~same, of_each), axis=0)
+        taken[1:] &= ~np.logical_or.reduceat(same, of_each)
+    return taken

@@ -10,7 +10,7 @@ from functools import cache
 
 import numpy as np
 
-from .cavity import distances_to_contour, even_lengths, is_inside
+from .cavity import even_lengths, signed_distances
 from .roles import Arrays
 
 GRID = 20  # points along the grid
@@ -75,8 +75,8 @@ def decode(
 
 def _is_clear(points: np.ndarray, contour: np.ndarray, n_contour: np.ndarray, l_s: np.ndarray) -> np.ndarray:
     """(B, M) whether points (B, M, 2) are inside their contour and not too close to it."""
-    away = distances_to_contour(points, contour, n_contour)
-    return is_inside(points, contour, n_contour) & (away >= MARGIN * l_s[:, None]) & (away > 0)
+    away = signed_distances(points, contour, n_contour)
+    return (away >= MARGIN * l_s[:, None]) & (away > 0)
 
 
 def _offsets(scores: np.ndarray, best: np.ndarray, resolution: int) -> np.ndarray:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from . import networks
-from .cavity import distances_to_contour, even_lengths, is_inside
+from .cavity import even_lengths, signed_distances
 from .grid import bounding_boxes, make_grids, steps
 from .stopwatch import Stopwatch
 
@@ -86,10 +86,7 @@ def _decode(
     with watch("NN2"):
         found = networks.score_grid(contour, n_contour, n_inner, grids.places(points), n_grid)
     with watch("decoding"):
-        scores = np.full(grids.admissible.shape, np.inf, dtype=np.float32)
-        np.put_along_axis(scores, order, found, axis=1)
-        offsets = _refinement(scores.reshape(-1, resolution, resolution)).reshape(len(scores), 2, -1)
-        offsets = np.take_along_axis(offsets, order[:, None], axis=2)
+        offsets = _refinement(found, row, column, resolution)
         # No farther than leaves the margin of moved vertices, whatever the scores are.
         farthest = ((_MARGIN - _MOVED_MARGIN) * even / grids.spacing).astype(np.float32)[:, None, None]
         way = np.sqrt((offsets * offsets).sum(axis=1, keepdims=True))
@@ -98,20 +95,24 @@ def _decode(
         return np.swapaxes(grids.places(np.swapaxes(inner, 1, 2)), 1, 2), count
 
 
-def _refinement(surface: np.ndarray) -> np.ndarray:
-    """Offsets (B, 2, R, R), in grid spacings, from grid points to the lowest point of the parabola through neighbours.
+def _refinement(scores: np.ndarray, row: np.ndarray, column: np.ndarray, resolution: int) -> np.ndarray:
+    """Offsets (B, 2, M), in grid spacings, from grid points to the lowest point of the parabola through neighbours.
 
-    surface: (B, R, R) scores, inf where there is none; a point with an unknown neighbour stays where it is.
+    scores: (B, M) of the grid points in these rows and columns, inf where there is none; a point with an unknown
+    neighbour stays where it is.
     """
-    offsets = np.zeros((len(surface), 2, *surface.shape[1:]), dtype=np.float32)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        for offset, middle, before, after in (
-            (offsets[:, 0, :, 1:-1], surface[:, :, 1:-1], surface[:, :, :-2], surface[:, :, 2:]),
-            (offsets[:, 1, 1:-1], surface[:, 1:-1], surface[:, :-2], surface[:, 2:]),
-        ):
-            bend = before + after - 2 * middle
-            hollow = (bend > 1e-6) & (bend < np.inf)
-            offset[...] = np.where(hollow, np.clip((before - after) / (2 * bend), -0.5, 0.5), 0)
+    # With an unknown column behind each row, and unknown rows below and above.
+    width = resolution + 1
+    surface = np.full((len(scores), width * (resolution + 2)), np.inf, dtype=np.float32)
+    place = (row + 1) * width + column + surface.shape[1] * np.arange(len(scores))[:, None]
+    surface.put(place, scores)
+    offsets = np.empty((len(scores), 2, scores.shape[1]), dtype=np.float32)
+    for axis, step in enumerate((1, width)):
+        before, after = surface.take(place - step), surface.take(place + step)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            bend = before + after - 2 * scores
+            offset = np.minimum(np.maximum((before - after) / (2 * bend), -0.5), 0.5)
+        offsets[:, axis] = np.where((bend > 1e-6) & (bend < np.inf), offset, 0)
     return offsets
 
 
@@ -168,7 +169,7 @@ def _is_valid(inner: np.ndarray, contour: np.ndarray, n_contour: np.ndarray, n_i
     margin = (_MOVED_MARGIN * even_lengths(contour, n_contour, n_inner)[:, None]).astype(np.float32)
     inner, contour = inner.astype(np.float32), contour.astype(np.float32)
     padding = np.arange(m) >= n_inner[:, None]
-    clear = is_inside(inner, contour, n_contour) & (distances_to_contour(inner, contour, n_contour) > margin)
+    clear = signed_distances(inner, contour, n_contour) > margin
     x, y = np.moveaxis(inner, -1, 0)
     apart = (x[:, :, None] - x[:, None]) ** 2 + (y[:, :, None] - y[:, None]) ** 2 > (margin**2)[..., None]
     apart |= padding[:, :, None] | padding[:, None] | np.eye(m, dtype=bool)

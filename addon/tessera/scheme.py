@@ -133,8 +133,7 @@ def connect(
     points: (B, V, 2), contour vertices, then inner vertices; entries: (contour, facet, vertex), sorted.
     """
     with watch("NN3"):
-        # Rounded, so that a last bit, which may depend on the processor, decides less often.
-        return np.round(roles.rate(points, n_contour, n_inner, entries), 4)
+        return roles.rate(points, n_contour, n_inner, entries)
 
 
 def join_vertices(contours: np.ndarray, n_contour: np.ndarray, inner: np.ndarray, n_inner: np.ndarray) -> np.ndarray:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tessera.cavity import distances_to_contour, is_inside
+from tessera.cavity import signed_distances
 from tessera.paper_placement import grid_points
 
 from .. import tables
@@ -20,8 +20,7 @@ APART = 0.1  # of l_s, to the contour and to each other
 def admissible(contour: np.ndarray, margin: float, resolution: int = GRID) -> np.ndarray:
     """The grid points (k, 2) inside a contour (N_C, 2) and at least ``margin`` from it."""
     points, n = grid_points(resolution)[None], np.array([len(contour)])
-    inside = is_inside(points, contour[None], n) & (distances_to_contour(points, contour[None], n) >= margin)
-    return points[inside]
+    return points[signed_distances(points, contour[None], n) >= margin]
 
 
 def groups_per_contour(n_inner: int) -> int:

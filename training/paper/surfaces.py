@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tessera.cavity import distances_to_contour, is_inside
+from tessera.cavity import signed_distances
 from tessera.paper_placement import grid_points
 
 from .. import tables
@@ -42,7 +42,7 @@ def keep_examples(config: dict) -> None:
 def inside(contour: np.ndarray, l_s: float) -> np.ndarray:
     """(R²,) bool: the grid points inside a contour and not too close to it."""
     points, n = grid_points(GRID)[None], np.array([len(contour)])
-    return (is_inside(points, contour[None], n) & (distances_to_contour(points, contour[None], n) >= APART * l_s))[0]
+    return (signed_distances(points, contour[None], n) >= APART * l_s)[0]
 
 
 def quality_surfaces(contour: np.ndarray, others: np.ndarray, chosen: np.ndarray) -> np.ndarray:
