@@ -206,7 +206,8 @@ def possible_elements(sides: np.ndarray, bits: np.ndarray, n_contour: np.ndarray
     free = to_all[:, 1:, 0] | to_all[:, :-1, 1]
     free |= bits[:, None]
     on_side = ~(edges[:, 1] | bits[:n_facets] | end_bits)
-    free |= -((on_side & bits[:, None]) == 0).astype(bits.dtype)
+    # All bits where it is on no side: 0 less 1.
+    free |= np.minimum(on_side & bits[:, None], 1) - 1
     crossed = crossing(to_all[:n_facets], to_ends, edges, end_bits)
     possible = edges[:, 0] & np.bitwise_and.reduce(free, axis=0) & ~(crossed[:-1] | crossed[1:])
     return possible & np.bitwise_or.reduce(bits, axis=0)
@@ -220,8 +221,9 @@ def crossing(to_start: np.ndarray, to_end: np.ndarray, edges: np.ndarray, end_bi
     """
     # With k left of s -> e, the line from k to v crosses if v is right of s -> e, left of k -> s and right of k -> e;
     # k is left if e is left of k -> s.
-    on_side = (to_start & end_bits[:, None, None]) != 0
-    crossed = on_side * (to_start & to_end[:, :, ::-1])
+    crossed = np.minimum(to_start & end_bits[:, None, None], 1)
+    crossed *= to_start
+    crossed &= to_end[:, :, ::-1]
     crossed &= edges[:, None, ::-1]
     crossed = np.bitwise_or.reduce(crossed, axis=0)
     return crossed[:, 0] | crossed[:, 1]
