@@ -112,7 +112,7 @@ def _mesh_levels(coarsening: Coarsening, passes: int, watch: Stopwatch) -> Steps
         if not len(triangles):
             break
         if passes:
-            improvement = improve(vertices, triangles, region, sizing, passes, watch, fixed)
+            improvement = improve(vertices, triangles, region, sizing, passes, watch, fixed, level == 0)
             vertices, triangles, region, more = yield from within(improvement, middle, end)
             fallbacks[: len(more)] += more
     return RegionMeshes(vertices, triangles, region, fallbacks, fixed), np.concatenate(failed)

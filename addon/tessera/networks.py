@@ -141,15 +141,14 @@ def centre_stars(ring: np.ndarray, n_ring: np.ndarray) -> np.ndarray:
     ring: (2, R + 2, S), counter-clockwise, the last of each one's n_ring (S,) vertices before the first, the first
     after the last, and in the padding.
     """
-    # At least two in a call: onnxruntime adds up in another order where there is one.
-    rows = np.arange(max(2, len(n_ring))) % len(n_ring)
-    share = np.where(np.arange(ring.shape[1] - 2)[:, None] < n_ring, 1 / n_ring, 0).astype(np.float32)[:, rows]
-    ring = ring.astype(np.float32)[..., rows]
+    if len(n_ring) == 1:  # onnxruntime adds up in another order then
+        return centre_stars(np.repeat(ring, 2, axis=2), np.repeat(n_ring, 2))[:, :1]
+    share = np.where(np.arange(ring.shape[1] - 2)[:, None] < n_ring, 1 / n_ring, 0).astype(np.float32)
     found = [
-        session("nn2_star").run(None, {"ring": np.ascontiguousarray(ring[..., part]), "share": share[:, part]})[0]
-        for part in _pieces(len(rows), ring.shape[1])
+        session("nn2_star").run(None, {"ring": ring[..., part].astype(np.float32, "C"), "share": share[:, part]})[0]
+        for part in _pieces(len(n_ring), ring.shape[1])
     ]
-    return np.concatenate(found, axis=1)[:, : len(n_ring)].astype(np.float64)
+    return np.concatenate(found, axis=1).astype(np.float64)
 
 
 def _pieces(count: int, size: int, call: int = _CALL_SIZE) -> list[slice]:

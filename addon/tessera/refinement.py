@@ -199,9 +199,9 @@ def _segments(
 
 def _beside_slivers(vertices: np.ndarray, triangles: np.ndarray, edges: np.ndarray) -> np.ndarray:
     """(e,) which edges belong to an element that is too flat to be split."""
-    corners = vertices[triangles]
-    longest = np.sqrt(((corners - np.roll(corners, 1, axis=1)) ** 2).sum(axis=2).max(axis=1))
-    rounding = _ROUNDINGS * np.spacing(np.abs(corners).max(axis=(1, 2)))
+    x, y = vertices[:, 0][triangles.T], vertices[:, 1][triangles.T]
+    longest = np.sqrt(((x - np.roll(x, 1, axis=0)) ** 2 + (y - np.roll(y, 1, axis=0)) ** 2).max(axis=0))
+    rounding = _ROUNDINGS * np.spacing(np.abs(vertices).max(axis=1))[triangles.T].max(axis=0)
     flat = element_quality(vertices, triangles) * longest < np.maximum(_SLIVER * longest, rounding)
     return among(edges, sides(triangles[flat]))
 

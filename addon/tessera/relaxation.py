@@ -19,7 +19,7 @@ from .stopwatch import Stopwatch
 
 _PADDED = 0, 8, 16  # sizes that rings are padded to
 # In worst and mean quality added: less is not worth a move, and less is no reason to look at the neighbours again.
-_GAIN, _SPREADS = 2e-4, 1e-3
+_GAIN, _SPREADS = 2e-4, 4e-3
 
 
 def relax(

@@ -2,7 +2,7 @@
 
 What the division cut apart may fit badly where cells meet. The elements of a patch are taken out; what is left is a
 contour, meshed by the scheme like any other, across whatever seam was there: with as many inner vertices as NN1 asks
-for, and with one less and one more. The best of the three stays, if it is better than the elements that were there.
+for, and with a few less and more. The best of the meshes stays, if it is better than the elements that were there.
 """
 
 from __future__ import annotations
@@ -20,14 +20,16 @@ from .relaxation import relax
 from .steps import Progress, Steps, within
 from .stopwatch import Stopwatch
 
-TURNS = 8, 4  # in domains of up to `_SMALL` elements, and in larger ones
+_SMALL = 5000, 300  # elements, at the last level and at those before
+TURNS = 8, 4, 2  # in domains of up to `_SMALL` elements, and in larger ones, at the last level and at those before
 POOR = 0.96  # elements of less quality are worth a try
-_MORE = 0, -1, 1  # inner vertices than NN1 asks for
+# Inner vertices more than NN1 asks for; the last two in domains of up to `_SMALL` elements alone.
+_MORE, _ALL_MORE = (0, -1, 1), (0, -1, 1, 2, -2)
 # What a patch is worth: its worst quality, and so many times its mean; a new one has to be better by the gain. Of those
 # that are worth as much as `_GOOD` already, few would get better, and by little: they are not tried. Those below `_BAD`
 # are; those between only where a domain has more to try than `_FEW` of its elements, or a turn is not worth it. The
-# first of two numbers is for domains of up to `_SMALL` elements, which take about a second at the most with all tries.
-_MEAN, _GAIN, _GOOD, _BAD, _FEW, _SMALL = 3, 3e-3, (3.95, 3.8), (3.8, 3.6), 1e-3, 5000
+# first of two numbers is for domains of up to `_SMALL` elements.
+_MEAN, _GAIN, _GOOD, _BAD, _FEW = 3, 3e-3, (3.95, 3.8), (3.8, 3.6), 1e-3
 _RELAXED = 0.3  # share of the work that is done after the first relaxation
 
 
@@ -39,30 +41,33 @@ def improve(
     passes: int,
     watch: Stopwatch,
     fixed: np.ndarray | None = None,
+    last: bool = True,
 ) -> Steps[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
     """Relax a mesh, then mesh its poor patches again and relax, a few times.
 
     vertices: (n, 2); triangles: (m, 3); domain: (m,) int from 0: each domain is treated as it would be alone; sizing:
     (k, 2) points and the domains (k,) that they are in -> (k,) wanted edge lengths; passes: of relaxation; fixed:
-    (f, 2) edges that stay, as the boundary does. Returns vertices, triangles and domain of the better mesh, where
+    (f, 2) edges that stay, as the boundary does; last: no finer level follows. Returns vertices, triangles and domain of the better mesh, where
     vertices that it has no use for stay, and the fallbacks of each domain.
     """
     fallbacks = np.zeros(int(domain.max()) + 1, dtype=np.int64)
     free = off_boundary(triangles, len(vertices), fixed)
     vertices = yield from within(relax(vertices, triangles, domain, free, passes, watch), 0.0, _RELAXED)
     tried = np.zeros(len(vertices), dtype=bool), np.zeros(len(vertices), dtype=bool)
-    for turn in range(TURNS[0]):
+    small = np.bincount(domain) <= _SMALL[0 if last else 1]
+    turns = TURNS[0] if small.any() else TURNS[1 if last else 2]
+    for turn in range(turns):
         quality = element_quality(vertices, triangles)
         contours, patch, kind = find_patches(triangles, quality, free, tried, POOR, fixed)
         if not len(contours):
             break
         for number in (0, 1):
             tried[number][triangles[(patch >= 0) & (kind[patch] == number)]] = True
-        contours, patch = _worthwhile(contours, patch, quality, domain, turn)
+        contours, patch = _worthwhile(contours, patch, quality, domain, small, turn < TURNS[1 if last else 2])
         if not len(contours):
             continue
-        start, end = (_RELAXED + (1 - _RELAXED) * (turn + n) / TURNS[0] for n in (0, 1))
-        remesh = _remesh(vertices, triangles, domain, quality, contours, patch, sizing, watch)
+        start, end = (_RELAXED + (1 - _RELAXED) * (turn + n) / turns for n in (0, 1))
+        remesh = _remesh(vertices, triangles, domain, quality, contours, patch, small, sizing, watch)
         found = yield from within(remesh, start, end)
         np.add.at(fallbacks, found.homes, found.fallbacks)
         triangles, domain = found.triangles, found.domain
@@ -78,15 +83,18 @@ def improve(
 
 
 def _worthwhile(
-    contours: np.ndarray, patch: np.ndarray, quality: np.ndarray, domain: np.ndarray, turn: int
+    contours: np.ndarray, patch: np.ndarray, quality: np.ndarray, domain: np.ndarray, small: np.ndarray, all_: bool
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The contours of patches (c, N), and each element's patch (m,) or -1, without those that are not worth a try."""
+    """The contours of patches (c, N), and each element's patch (m,) or -1, without those that are not worth a try.
+
+    small: (d,) bool, the domains that are given more turns and more tries; all_: whether the others have this turn too.
+    """
     taken = np.flatnonzero(patch >= 0)
     worth = _worth(quality[taken], patch[taken], len(contours))
     home = _homes(patch, domain, len(contours))
     n_elements = np.bincount(domain)
-    good, bad, turns = (np.where(n_elements <= _SMALL, *limits)[home] for limits in (_GOOD, _BAD, TURNS))
-    poor = (worth < good) & (turn < turns)
+    good, bad = (np.where(small, *limits)[home] for limits in (_GOOD, _BAD))
+    poor = (worth < good) & (small[home] | all_)
     poor &= (worth < bad) | (np.bincount(home[poor], minlength=len(n_elements)) > _FEW * n_elements)[home]
     anew = np.append(np.where(poor, np.cumsum(poor) - 1, -1), -1)
     return contours[poor], anew[patch]
@@ -118,26 +126,29 @@ def _remesh(
     quality: np.ndarray,
     contours: np.ndarray,
     patch: np.ndarray,
+    small: np.ndarray,
     sizing: Sizing,
     watch: Stopwatch,
 ) -> Steps[_Remeshed]:
-    """Mesh patches (c, N) again, once; patch: (m,) the one that each element is in, or -1."""
+    """Mesh patches (c, N) again, once; patch: (m,) the one that each element is in, or -1; small: as `_worthwhile`."""
     n, taken = len(contours), np.flatnonzero(patch >= 0)
     home = _homes(patch, domain, n)
     # A patch is no reason for smaller elements than are wanted, though its own edges may be shorter.
     lengths = np.maximum(mean_edge_lengths(vertices, contours), sizing(middles(vertices, contours), home))
-    points, new, made, fell = yield from mesh_cells(vertices, contours, lengths, watch, _MORE)
+    more = _ALL_MORE if small[home].any() else _MORE
+    points, new, made, fell = yield from mesh_cells(vertices, contours, lengths, watch, more)
     before = _worth(quality[taken], patch[taken], n)
-    after = _worth(element_quality(points, new), made, n * len(_MORE)).reshape(n, -1)
+    after = _worth(element_quality(points, new), made, n * len(more)).reshape(n, -1)
+    after[~small[home], len(_MORE) :] = -np.inf
     better = np.flatnonzero(after.max(axis=1) > before + _GAIN)
-    chosen = better * len(_MORE) + after[better].argmax(axis=1)
+    chosen = better * len(more) + after[better].argmax(axis=1)
     come = np.isin(made, chosen)
     stay = ~np.isin(patch, better)
     points, new = _without_unused(points, new[come], len(vertices))
     return _Remeshed(
         points,
         np.concatenate([triangles[stay], new]),
-        np.concatenate([domain[stay], home[made[come] // len(_MORE)]]),
+        np.concatenate([domain[stay], home[made[come] // len(more)]]),
         new.ravel(),
         home[better],
         fell[chosen],
