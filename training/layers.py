@@ -52,7 +52,7 @@ class Boundary(nn.Module):
 class Attention(nn.Module):
     """Vertices look at vertices, each head at a scale of its own, and take values and the mean way to what they see."""
 
-    def __init__(self, width: int, heads: int = 2, hidden: int = 48, size: int = 12):
+    def __init__(self, width: int, heads: int = 4, hidden: int = 64, size: int = 12):
         super().__init__()
         self.size = size
         self.before = nn.LayerNorm(width)
