@@ -92,10 +92,10 @@ def _vertices(x: np.ndarray, y: np.ndarray, following: np.ndarray, n_contour: np
 def _elements(
     x: np.ndarray, y: np.ndarray, place: np.ndarray, following: np.ndarray, facets: np.ndarray, apex: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The numbers (P,) of the blunt ones of elements on facets, from contour vertex `facets` (n,) on, and (8, P) of them.
+    """The numbers (P,) of the blunt ones of n elements, and (8, P) of them.
 
-    x, y: where the vertices are; apex (n,) of those; place (T,), following: where the contours' vertices are among
-    them, and which comes after each.
+    x, y: where the vertices are; place (T,), following: where the contours' are among them, and which comes after each;
+    facets (n,): the contour vertices from which the elements' facets go; apex (n,) of all vertices.
     """
     if not len(apex):
         return np.zeros(0, dtype=np.int64), np.zeros((8, 0), dtype=np.float32)

@@ -157,9 +157,7 @@ def _pieces(count: int, size: int, call: int = _CALL_SIZE) -> list[slice]:
     return [slice(start, end) for start, end in pairwise(ends.tolist())]
 
 
-def rate_connections(
-    points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, entries: np.ndarray
-) -> np.ndarray:
+def rate_connections(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndarray, entries: np.ndarray) -> np.ndarray:
     """NN3: values (q_worst, q_mean) (P, 2) float64 of entries of the connection tables.
 
     points: (B, V, 2) contour vertices, then inner vertices, not transformed; entries: (P, 3) int64, sorted (contour,

@@ -47,26 +47,26 @@ def improve(
 
     vertices: (n, 2); triangles: (m, 3); domain: (m,) int from 0: each domain is treated as it would be alone; sizing:
     (k, 2) points and the domains (k,) that they are in -> (k,) wanted edge lengths; passes: of relaxation; fixed:
-    (f, 2) edges that stay, as the boundary does; last: no finer level follows. Returns vertices, triangles and domain of the better mesh, where
-    vertices that it has no use for stay, and the fallbacks of each domain.
+    (f, 2) edges that stay, as the boundary does; last: no finer level follows. Returns vertices, triangles and domain
+    of the better mesh, where vertices that it has no use for stay, and the fallbacks of each domain.
     """
     fallbacks = np.zeros(int(domain.max()) + 1, dtype=np.int64)
     free = off_boundary(triangles, len(vertices), fixed)
     vertices = yield from within(relax(vertices, triangles, domain, free, passes, watch), 0.0, _RELAXED)
     tried = np.zeros(len(vertices), dtype=bool), np.zeros(len(vertices), dtype=bool)
     small = np.bincount(domain) <= _SMALL[0 if last else 1]
-    turns = TURNS[0] if small.any() else TURNS[1 if last else 2]
-    for turn in range(turns):
+    turns = np.where(small, TURNS[0], TURNS[1 if last else 2])
+    for turn in range(turns.max()):
         quality = element_quality(vertices, triangles)
         contours, patch, kind = find_patches(triangles, quality, free, tried, POOR, fixed)
         if not len(contours):
             break
         for number in (0, 1):
             tried[number][triangles[(patch >= 0) & (kind[patch] == number)]] = True
-        contours, patch = _worthwhile(contours, patch, quality, domain, small, turn < TURNS[1 if last else 2])
+        contours, patch = _worthwhile(contours, patch, quality, domain, small, turn < turns)
         if not len(contours):
             continue
-        start, end = (_RELAXED + (1 - _RELAXED) * (turn + n) / turns for n in (0, 1))
+        start, end = (_RELAXED + (1 - _RELAXED) * (turn + n) / turns.max() for n in (0, 1))
         remesh = _remesh(vertices, triangles, domain, quality, contours, patch, small, sizing, watch)
         found = yield from within(remesh, start, end)
         np.add.at(fallbacks, found.homes, found.fallbacks)
@@ -83,18 +83,23 @@ def improve(
 
 
 def _worthwhile(
-    contours: np.ndarray, patch: np.ndarray, quality: np.ndarray, domain: np.ndarray, small: np.ndarray, all_: bool
+    contours: np.ndarray,
+    patch: np.ndarray,
+    quality: np.ndarray,
+    domain: np.ndarray,
+    small: np.ndarray,
+    going: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """The contours of patches (c, N), and each element's patch (m,) or -1, without those that are not worth a try.
 
-    small: (d,) bool, the domains that are given more turns and more tries; all_: whether the others have this turn too.
+    small, going: (d,) bool, the domains that are given more tries, and those that have this turn.
     """
     taken = np.flatnonzero(patch >= 0)
     worth = _worth(quality[taken], patch[taken], len(contours))
     home = _homes(patch, domain, len(contours))
     n_elements = np.bincount(domain)
     good, bad = (np.where(small, *limits)[home] for limits in (_GOOD, _BAD))
-    poor = (worth < good) & (small[home] | all_)
+    poor = (worth < good) & going[home]
     poor &= (worth < bad) | (np.bincount(home[poor], minlength=len(n_elements)) > _FEW * n_elements)[home]
     anew = np.append(np.where(poor, np.cumsum(poor) - 1, -1), -1)
     return contours[poor], anew[patch]

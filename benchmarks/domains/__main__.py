@@ -12,7 +12,7 @@ import tessera
 
 from . import pictures, report
 from .cases import all_cases
-from .comparison import Found, mesh_cases
+from .comparison import Found, mesh_cases, mesh_circles
 from .goals import growth_goals, quality_goals, validity_goal
 from .growth import LARGE, SIZES, Circle, measure_all
 from .invalid import Outcomes, count_invalid
@@ -34,15 +34,15 @@ def main() -> None:
     # First, while nothing else runs.
     circles = measure_all(LARGE if arguments.quick else SIZES[-1])
     found = mesh_cases(range(len(all_cases())), processes)
-    print(write(FOLDER, found, circles, count_invalid(arguments.random, processes)))
+    print(write(FOLDER, found, circles, count_invalid(arguments.random, processes), mesh_circles()))
 
 
-def write(folder: Path, found: Found, circles: list[Circle], outcomes: Outcomes) -> str:
+def write(folder: Path, found: Found, circles: list[Circle], outcomes: Outcomes, around: list[tessera.Report]) -> str:
     """Write the page and its pictures; returns the page's text."""
     folder.mkdir(parents=True, exist_ok=True)
     results = [(case, measures) for case, _, measures in found]
     goals = [*quality_goals(results), *growth_goals(circles), validity_goal(outcomes)]
-    text = report.page(goals, results, circles, outcomes)
+    text = report.page(goals, results, circles, outcomes, around)
     draw(folder, found)
     pictures.draw_growth(folder / report.file_of("growth"), circles)
     (folder / "domains.md").write_text(text + "\n")

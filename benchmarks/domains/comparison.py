@@ -6,9 +6,16 @@ import multiprocessing
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 
-from .cases import Case, all_cases, target_of
+import numpy as np
+
+import tessera
+
+from .cases import Case, all_cases, circle, target_of
 from .measures import Measures, measure
 from .meshers import Meshed, mesh_all
+
+# One length more or less moves every element of a circle: those around the one of `cases.paper_cases`.
+LENGTHS = np.linspace(0.096, 0.104, 9)
 
 # Cases, with meshes and measures by mesher.
 Found = list[tuple[Case, dict[str, Meshed], dict[str, Measures]]]
@@ -28,3 +35,8 @@ def mesh_case(number: int) -> tuple[dict[str, Meshed], dict[str, Measures]]:
     case = all_cases()[number]
     meshes, target = mesh_all(case), target_of(case)
     return meshes, {name: measure(mesh, target, case.left_out) for name, mesh in meshes.items()}
+
+
+def mesh_circles() -> list[tessera.Report]:
+    """What is reported of our meshes of the circle at each of LENGTHS."""
+    return [tessera.mesh(case.loops, case.edge_length).report for case in map(circle, LENGTHS)]

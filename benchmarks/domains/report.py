@@ -6,7 +6,9 @@ import datetime
 from collections.abc import Iterable, Sequence
 
 import gmsh
+import numpy as np
 
+import tessera
 from training.provenance import code_version, network_hashes
 
 from .. import machine
@@ -32,8 +34,14 @@ def file_of(picture: str) -> str:
     return f"domains_{picture}.png"
 
 
-def page(goals: Sequence[Goal], results: Results, circles: Sequence[Circle], outcomes: Outcomes) -> str:
-    """The whole text."""
+def page(
+    goals: Sequence[Goal],
+    results: Results,
+    circles: Sequence[Circle],
+    outcomes: Outcomes,
+    around: Sequence[tessera.Report],
+) -> str:
+    """The whole text. around: of circles of about as many nodes as the one among the goals."""
     networks = ", ".join(f"{name} {digest}" for name, digest in network_hashes().items())
     return "\n\n".join(
         [
@@ -42,6 +50,7 @@ def page(goals: Sequence[Goal], results: Results, circles: Sequence[Circle], out
             f"{datetime.date.today()} at {code_version()} with {networks}:",
             machine.describe(),
             table(["", "paper", "goal", *MESHERS, ""], [goal.cells() for goal in goals]),
+            _around(around),
             _introduction(),
             "## Every domain",
             f"Per cent of inner edges: within {SHORTEST} to {LONGEST} times the sizing function at their middle, and "
@@ -57,6 +66,16 @@ def page(goals: Sequence[Goal], results: Results, circles: Sequence[Circle], out
 def table(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """A Markdown table."""
     return "\n".join(f"| {' | '.join(cells)} |" for cells in (columns, ["---"] * len(columns), *rows))
+
+
+def _around(reports: Sequence[tessera.Report]) -> str:
+    found = np.array([(report.n_vertices, report.q_worst, report.q_mean) for report in reports])
+    (least, low, low_mean), (most, high, high_mean) = found.min(axis=0), found.max(axis=0)
+    _, middle, middle_mean = np.median(found, axis=0)
+    return (
+        f"The circle at {len(reports)} lengths around that one, {least:.0f} to {most:.0f} nodes: q_worst {low:.3f} to "
+        f"{high:.3f}, median {middle:.3f}; q_mean {low_mean:.4f} to {high_mean:.4f}, median {middle_mean:.4f}."
+    )
 
 
 def _introduction() -> str:

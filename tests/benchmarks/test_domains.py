@@ -171,7 +171,9 @@ def test_other_processes_find_the_same(found):
 def test_the_page_has_every_goal_and_picture(found, tmp_path):
     outcomes = invalid.count_invalid(4, 1)
     assert sum(outcomes.kinds.values()) == 4 and outcomes.triangles > 10
-    text = write(tmp_path, found, circles(1.0), outcomes)
+    around = [tessera.mesh(cases.circle(0.3).loops, 0.3).report]
+    text = write(tmp_path, found, circles(1.0), outcomes, around)
+    assert f"q_worst {around[0].q_worst:.3f} to {around[0].q_worst:.3f}" in text
     assert (tmp_path / "domains.md").read_text() == text + "\n"
     for goal in goals.quality_goals([(case, measures) for case, _, measures in found]):
         assert f"| {goal.what} |" in text

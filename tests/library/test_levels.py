@@ -123,11 +123,11 @@ def test_any_number_of_levels_gives_a_valid_mesh_of_the_same_boundary(seed, most
 
 def test_a_circle_is_better_than_the_paper_s():
     """q_worst 0.88 and q_mean 0.97 with about 400 nodes (section 4)."""
-    mesh = tessera.mesh([spaced(400)], 0.102)
+    mesh = tessera.mesh([spaced(400)], 0.101)
     assert 350 < mesh.report.n_vertices < 450
     assert mesh.report.q_worst >= 0.85 and mesh.report.q_mean >= 0.98
     edges = tessera.edges.unique_edges(mesh.triangles)
-    lengths = np.linalg.norm(np.diff(mesh.vertices[edges], axis=1)[:, 0], axis=1) / 0.102
+    lengths = np.linalg.norm(np.diff(mesh.vertices[edges], axis=1)[:, 0], axis=1) / 0.101
     assert np.mean((lengths > 0.7) & (lengths < 1.4)) > 0.95
 
 
