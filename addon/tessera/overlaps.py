@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from .visibility import crossing, lines_to
@@ -46,15 +48,19 @@ def compatible(
     its own vertex and that one's bit.
     """
     k, n = facet.shape
-    # Each entry with all better ones, by the entry.
-    one, other = np.tril_indices(k, -1)
-    overlap = closed[facet[one], other[:, None], np.arange(n)] & chosen[one] != 0
-    follows = (facet[one] == end[other]) & (vertex[other] == end[one]) & (vertex[one] == facet[other])
-    precedes = (end[one] == facet[other]) & (vertex[one] == end[other]) & (vertex[other] == facet[one])
-    same = overlap & (follows | precedes)
-    of_each = np.arange(1, k) * np.arange(k - 1) // 2
     taken = np.ones((k, n), dtype=bool)
     if k > 1:
-        taken[1:] = ~np.logical_or.accumulate(np.logical_or.reduceat(overlap & ~same, of_each), axis=0)
-        taken[1:] &= ~np.logical_or.reduceat(same, of_each)
+        one, other, first = _pairs(k)
+        overlap = closed[facet[one], other[:, None], np.arange(n)] & chosen[one] != 0
+        follows = (facet[one] == end[other]) & (vertex[other] == end[one]) & (vertex[one] == facet[other])
+        precedes = (end[one] == facet[other]) & (vertex[one] == end[other]) & (vertex[other] == facet[one])
+        same = overlap & (follows | precedes)
+        taken[1:] = ~np.logical_or.accumulate(np.logical_or.reduceat(overlap & ~same, first), axis=0)
+        taken[1:] &= ~np.logical_or.reduceat(same, first)
     return taken
+
+
+@cache
+def _pairs(k: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Each of k entries (p,) with all better ones (p,), and where those of each but the best begin (k - 1,)."""
+    return *np.tril_indices(k, -1), np.arange(1, k) * np.arange(k - 1) // 2

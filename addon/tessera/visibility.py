@@ -74,8 +74,7 @@ def vertex_sides(points: np.ndarray, n_vertices: np.ndarray) -> np.ndarray:
     vertices = np.zeros((n_rows, 3, padded_size(width)), dtype=np.float32)
     vertices[:, :2, :width] = (coordinates - middle) / np.where(half > 0, half, 1) * present[:, None]
     vertices[:, 2, :width] = present
-    # Each line is looked at in one direction.
-    u, v = np.triu_indices(width, 1)
+    u, v, place = _lines(width)
     n_lines = len(u)
     # Left of all lines, right of them, and nothing.
     words = np.zeros((n_rows, 2 * n_lines + 1), dtype=bits.dtype)
@@ -86,10 +85,22 @@ def vertex_sides(points: np.ndarray, n_vertices: np.ndarray) -> np.ndarray:
         words[rows, :n_lines] = pack_words(determinant > _ERROR_BOUND, bits.dtype)
         words[rows, n_lines:-1] = pack_words(determinant < -_ERROR_BOUND, bits.dtype)
     _decide_doubtful(words[:, :n_lines], words[:, n_lines:-1], points, u, v, present, bits)
+    return words.take(place, axis=1)
+
+
+@cache
+def _lines(width: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The lines (L,) between two of so many vertices, each in one direction, from the first to the second.
+
+    And where the words of what lies left and right of the line to each vertex from each other one (V, V, 2) are, in
+    those left of all lines, then right of them, then none.
+    """
+    u, v = np.triu_indices(width, 1)
+    n_lines = len(u)
     place = np.full((width, width, 2), 2 * n_lines)
     place[v, u, 0] = place[u, v, 1] = np.arange(n_lines)
     place[v, u, 1] = place[u, v, 0] = n_lines + np.arange(n_lines)
-    return words.take(place, axis=1)
+    return u, v, place
 
 
 def _determinants(vertices: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
