@@ -29,7 +29,7 @@ _MORE, _ALL_MORE = (0, -1, 1), (0, -1, 1, 2, -2)
 # that are worth as much as `_GOOD` already, few would get better, and by little: they are not tried. Those below `_BAD`
 # are; those between only where a domain has more to try than `_FEW` of its elements, or a turn is not worth it. The
 # first of two numbers is for domains of up to `_SMALL` elements.
-_MEAN, _GAIN, _GOOD, _BAD, _FEW = 3, 3e-3, (3.95, 3.8), (3.8, 3.6), 1e-3
+_MEAN, _GAIN, _GOOD, _BAD, _FEW = 3, 3e-3, (3.95, 3.75), (3.8, 3.6), 1e-3
 _RELAXED = 0.3  # share of the work that is done after the first relaxation
 
 
@@ -56,7 +56,8 @@ def improve(
     tried = np.zeros(len(vertices), dtype=bool), np.zeros(len(vertices), dtype=bool)
     small = np.bincount(domain) <= _SMALL[0 if last else 1]
     turns = np.where(small, TURNS[0], TURNS[1 if last else 2])
-    for turn in range(turns.max()):
+    most = turns.max()
+    for turn in range(most):
         quality = element_quality(vertices, triangles)
         contours, patch, kind = find_patches(triangles, quality, free, tried, POOR, fixed)
         if not len(contours):
@@ -64,9 +65,11 @@ def improve(
         for number in (0, 1):
             tried[number][triangles[(patch >= 0) & (kind[patch] == number)]] = True
         contours, patch = _worthwhile(contours, patch, quality, domain, small, turn < turns)
+        # A domain that has nothing worth a try is done.
+        turns[np.bincount(_homes(patch, domain, len(contours)), minlength=len(turns)) == 0] = 0
         if not len(contours):
-            continue
-        start, end = (_RELAXED + (1 - _RELAXED) * (turn + n) / turns.max() for n in (0, 1))
+            break
+        start, end = (_RELAXED + (1 - _RELAXED) * (turn + n) / most for n in (0, 1))
         remesh = _remesh(vertices, triangles, domain, quality, contours, patch, small, sizing, watch)
         found = yield from within(remesh, start, end)
         np.add.at(fallbacks, found.homes, found.fallbacks)
