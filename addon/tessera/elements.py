@@ -30,7 +30,8 @@ class Described:
     following: np.ndarray  # (T + 1,) int64, the next vertex of the contour
     facets: np.ndarray  # (P,) int64, the vertex that an entry's facet starts from
     apexes: np.ndarray  # (P,) int64
-    elements: np.ndarray  # (8, P) float32: quality and its square, sides, cotangent at the apex, both beside the best
+    # (8, P) float32: quality and its square, sides, cotangent at the apex, and both beside the best that are told of.
+    elements: np.ndarray
 
 
 def describe(

@@ -28,7 +28,7 @@ def score_entries(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Possible entries as integers, the better the larger and above 0: (B, F, V) int32.
 
-    An entry is acceptable if its q_worst is finite and positive, and its element not flat; others are at most 0. Rows
+    An entry is acceptable if its q_worst is finite and positive, and its element not flat; others are 0. Rows
     without any are returned too (s,): there each facet's bluntest apexes count, by the element's own quality.
     """
     n_facets, width = int(n_contour.max()), points.shape[1]
@@ -47,7 +47,7 @@ def score_entries(
         corners = _corners(points, n_contour, entries[:, left])
         (blunt,) = np.nonzero(_is_bluntest(*corners, row[left] * n_facets + facet[left]))
         left, own = left[blunt], quality(*corners)[blunt]
-        # Beside the best of the contour, so that flat elements are told apart too.
+        # Beside the best of them in the contour, so that flat elements are told apart too.
         best = np.zeros(len(points))
         np.maximum.at(best, row[left], own)
         value = own / np.maximum(best[row[left]], np.finfo(float).tiny)

@@ -64,7 +64,7 @@ def make_grids(contour: np.ndarray, n_contour: np.ndarray, margin: np.ndarray, r
         away = _squared_distances(start[..., rows], end[..., rows], resolution)
         inside = _is_inside(start[..., rows], end[..., rows], resolution)
         np.logical_and(inside, away > closest[rows], out=admissible[..., rows])
-    return Grids(resolution, middle, spacing, np.ascontiguousarray(admissible.reshape(-1, len(contour)).T))
+    return Grids(resolution, middle, spacing, np.ascontiguousarray(admissible.reshape(resolution**2, -1).T))
 
 
 def _squared_distances(start: np.ndarray, end: np.ndarray, resolution: int) -> np.ndarray:

@@ -161,20 +161,22 @@ def rate_connections(points: np.ndarray, n_contour: np.ndarray, n_inner: np.ndar
     """NN3: values (q_worst, q_mean) (P, 2) float64 of entries of the connection tables.
 
     points: (B, V, 2) contour vertices, then inner vertices, not transformed; entries: (P, 3) int64, sorted (contour,
-    facet, vertex). Where NN3 sees no good in a contour, its q_mean still tells which of the poor elements to take.
+    facet, vertex). Those that NN3 is not told of (`elements.py`) get 0; values are rounded to four digits. Where NN3
+    sees no good in a contour, its q_mean still tells which of the poor elements to take.
     """
     first = np.searchsorted(entries[:, 0], np.arange(len(points) + 1))
     values = np.zeros((2, len(entries))).T  # each column in one piece
     for part in _pieces(len(points), max(1, len(entries) // max(1, len(points))), _CALL_ENTRIES):
         rows = slice(first[part.start], first[part.stop])
-        told, described = describe(points[part], n_contour[part], n_inner[part], entries[rows] - [part.start, 0, 0])
-        (found,) = session("nn3").run(None, vars(described))
-        # What is possible has some quality, though less than NN3 may err by.
-        row = entries[rows, 0].take(told)
-        hopeless = np.bincount(row, found[:, 0] > 0, part.stop)[row] == 0
-        found[hopeless, 0] = _LEAST_QUALITY
+        own = entries[rows] - [part.start, 0, 0]
+        told, described = describe(points[part], n_contour[part], n_inner[part], own)
         # Rounded, so that a last bit, which may depend on the processor, decides less often.
-        values[rows][told] = np.round(found, 4)
+        found = np.round(session("nn3").run(None, vars(described))[0], 4)
+        # What is possible has some quality, though less than NN3 may err by.
+        row = own[told, 0]
+        hopeless = np.bincount(row, ~(found[:, 0] <= 0))[row] == 0
+        found[hopeless, 0] = _LEAST_QUALITY
+        values[rows][told] = found
     return values
 
 

@@ -112,7 +112,7 @@ def _refinement(scores: np.ndarray, row: np.ndarray, column: np.ndarray, resolut
         with np.errstate(invalid="ignore", divide="ignore"):
             bend = before + after - 2 * scores
             offset = np.minimum(np.maximum((before - after) / (2 * bend), -0.5), 0.5)
-        offsets[:, axis] = np.where((bend > 1e-6) & (bend < np.inf), offset, 0)
+            offsets[:, axis] = np.where((bend > 1e-6) & (bend < np.inf), offset, 0)
     return offsets
 
 

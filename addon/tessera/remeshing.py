@@ -20,15 +20,15 @@ from .relaxation import relax
 from .steps import Progress, Steps, within
 from .stopwatch import Stopwatch
 
-_SMALL = 5000, 300  # elements, at the last level and at those before
-TURNS = 8, 4, 2  # in domains of up to `_SMALL` elements, and in larger ones, at the last level and at those before
+# Small domains are those of up to so many elements (regions count by themselves), at the last level and before it; they
+# have more turns, tries and choices than large ones. Of what comes in twos, the first is for small domains.
+_SMALL, _SMALL_BEFORE = 5000, 300
+_TURNS, _TURNS_BEFORE = (8, 4), (8, 2)
 POOR = 0.96  # elements of less quality are worth a try
-# Inner vertices more than NN1 asks for; the last two in domains of up to `_SMALL` elements alone.
-_MORE, _ALL_MORE = (0, -1, 1), (0, -1, 1, 2, -2)
+_ALL_MORE, _MORE = (0, -1, 1, 2, -2), (0, -1, 1)  # inner vertices than NN1 asks for
 # What a patch is worth: its worst quality, and so many times its mean; a new one has to be better by the gain. Of those
 # that are worth as much as `_GOOD` already, few would get better, and by little: they are not tried. Those below `_BAD`
-# are; those between only where a domain has more to try than `_FEW` of its elements, or a turn is not worth it. The
-# first of two numbers is for domains of up to `_SMALL` elements.
+# are; those between only where a domain has more to try than `_FEW` of its elements, or a turn is not worth it.
 _MEAN, _GAIN, _GOOD, _BAD, _FEW = 3, 3e-3, (3.95, 3.75), (3.8, 3.6), 1e-3
 _RELAXED = 0.3  # share of the work that is done after the first relaxation
 
@@ -54,8 +54,9 @@ def improve(
     free = off_boundary(triangles, len(vertices), fixed)
     vertices = yield from within(relax(vertices, triangles, domain, free, passes, watch), 0.0, _RELAXED)
     tried = np.zeros(len(vertices), dtype=bool), np.zeros(len(vertices), dtype=bool)
-    small = np.bincount(domain) <= _SMALL[0 if last else 1]
-    turns = np.where(small, TURNS[0], TURNS[1 if last else 2])
+    n_elements = np.bincount(domain)
+    small = n_elements <= (_SMALL if last else _SMALL_BEFORE)
+    turns = np.where(n_elements == 0, 0, np.where(small, *_TURNS if last else _TURNS_BEFORE))
     most = turns.max()
     for turn in range(most):
         quality = element_quality(vertices, triangles)
@@ -95,7 +96,7 @@ def _worthwhile(
 ) -> tuple[np.ndarray, np.ndarray]:
     """The contours of patches (c, N), and each element's patch (m,) or -1, without those that are not worth a try.
 
-    small, going: (d,) bool, the domains that are given more tries, and those that have this turn.
+    small, going: (d,) bool, which domains are small, and which have this turn.
     """
     taken = np.flatnonzero(patch >= 0)
     worth = _worth(quality[taken], patch[taken], len(contours))

@@ -22,7 +22,7 @@ class Roles:
     count: NN1; n_contour, l_s (B,) -> N_I (B,) int64. place: NN2; n_contour, n_inner, l_s, watch -> distinct inner
     vertices (B, M, 2) inside, and how many each contour got (B,), at most n_inner. rate: NN3; vertices (B, V, 2) of
     contours, inner ones right after them, n_contour, n_inner, entries (P, 3) sorted (contour, facet, vertex) ->
-    (q_worst, q_mean) (P, 2) float64.
+    (q_worst, q_mean) (P, 2) float64, rounded so that a last bit decides less often; an entry of 0 is not to be taken.
     """
 
     count: Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]

@@ -12,7 +12,7 @@ Words are unsigned integers or, for more than 64 bits, Python's own in object ar
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -88,7 +88,7 @@ def vertex_sides(points: np.ndarray, n_vertices: np.ndarray) -> np.ndarray:
     return words.take(place, axis=1)
 
 
-@cache
+@lru_cache(64)
 def _lines(width: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The lines (L,) between two of so many vertices, each in one direction, from the first to the second.
 
@@ -100,6 +100,8 @@ def _lines(width: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     place = np.full((width, width, 2), 2 * n_lines)
     place[v, u, 0] = place[u, v, 1] = np.arange(n_lines)
     place[v, u, 1] = place[u, v, 0] = n_lines + np.arange(n_lines)
+    for array in (u, v, place):
+        array.setflags(write=False)
     return u, v, place
 
 

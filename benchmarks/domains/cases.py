@@ -59,7 +59,7 @@ def round_loop(radius: float = 1.0, n: int = 400) -> np.ndarray:
 
 
 def circle(edge_length: float) -> Case:
-    """The unit circle; 0.101 is for about 400 nodes."""
+    """The unit circle; of thousandths, 0.101 comes nearest to 400 nodes."""
     return Case("circle", "circle", [round_loop()], edge_length, paper=(0.88, 0.97), goal=(0.88, 0.985))
 
 

@@ -70,11 +70,13 @@ def table(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 
 def _around(reports: Sequence[tessera.Report]) -> str:
     found = np.array([(report.n_vertices, report.q_worst, report.q_mean) for report in reports])
+    reached = sum(report.q_worst >= 0.88 and report.q_mean >= 0.985 for report in reports)
     (least, low, low_mean), (most, high, high_mean) = found.min(axis=0), found.max(axis=0)
     _, middle, middle_mean = np.median(found, axis=0)
     return (
         f"The circle at {len(reports)} lengths around that one, {least:.0f} to {most:.0f} nodes: q_worst {low:.3f} to "
-        f"{high:.3f}, median {middle:.3f}; q_mean {low_mean:.4f} to {high_mean:.4f}, median {middle_mean:.4f}."
+        f"{high:.3f}, median {middle:.3f}; q_mean {low_mean:.4f} to {high_mean:.4f}, median {middle_mean:.4f}; "
+        f"{reached} of them reach both goals."
     )
 
 

@@ -42,3 +42,8 @@ def test_a_contour_has_the_same_candidates_among_others():
     for row, n in enumerate(counts):
         alone = make_grids(contour[row : row + 1, :n], counts[row : row + 1], margin[:1], 16).admissible
         assert (alone[0] == together[row]).all()
+
+
+def test_no_contours():
+    grids = make_grids(np.zeros((0, 5, 2)), np.zeros(0, dtype=np.int64), np.zeros(0), 8)
+    assert grids.admissible.shape == (0, 64)

@@ -83,3 +83,25 @@ def test_scores_cannot_draw_vertices_across_a_notch(count, monkeypatch):
         monkeypatch.setattr(networks, "move_inner_vertices", lambda contour, n_contour, inner, n_inner: inner)
         inner, found = place(notched, count)
         assert_valid(notched, inner[:, : found[0]], int(found[0]))
+
+
+def test_points_are_refined_to_where_the_scores_are_lowest():
+    """On parabolas of known lowest points: inside the grid along both axes; not beside what is unknown, nor far."""
+    resolution = 6
+    row, column = (of.ravel() for of in np.mgrid[:resolution, :resolution])
+    lowest = np.array([[2.3, 3.8], [1.1, 2.6]])  # row and column, of two contours
+    scores = ((row - lowest[:, :1]) ** 2 + 2 * (column - lowest[:, 1:]) ** 2).astype(np.float32)
+    hole = 3 * resolution + 1
+    scores[1, hole] = np.inf
+    rows, columns = np.tile(row, (2, 1)), np.tile(column, (2, 1))
+    offsets = placement._refinement(scores, rows, columns, resolution)
+    for number in (0, 1):
+        known = np.isfinite(scores[number]).reshape(resolution, resolution)
+        for axis, place in ((0, column), (1, row)):
+            wanted = np.clip(lowest[number, 1 - axis] - place, -0.5, 0.5)
+            between = (place > 0) & (place < resolution - 1)
+            beside = np.pad(known, 1)  # unknown all around
+            shifts = (beside[1:-1, :-2] & beside[1:-1, 2:], beside[:-2, 1:-1] & beside[2:, 1:-1])
+            sees = shifts[axis].ravel() & known.ravel()
+            assert (sees <= between).all()
+            np.testing.assert_allclose(offsets[number, axis], np.where(sees, wanted, 0), atol=1e-5)

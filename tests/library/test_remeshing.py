@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from tessera import remeshing
 from tessera.quality import element_quality
 from tessera.remeshing import improve
 from tessera.steps import finish
@@ -16,11 +17,11 @@ def compact(vertices, triangles):
     return vertices[used], local.reshape(-1, 3)
 
 
-def improved(vertices, triangles, domain):
+def improved(vertices, triangles, domain, last=True):
     def sizing(points, domain):
         return np.zeros(len(points))
 
-    return finish(improve(vertices, triangles, domain, sizing, 3, Stopwatch()))
+    return finish(improve(vertices, triangles, domain, sizing, 3, Stopwatch(), last=last))
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -34,15 +35,26 @@ def test_a_disturbed_mesh_stays_valid_and_gets_better(seed):
     assert len(domain) == len(triangles)
 
 
-def test_domains_do_not_see_each_other():
-    first, second = disturbed_grid(7, 10), disturbed_grid(5, 11)
-    alone = [improved(v, t, np.zeros(len(t), int)) for v, t, _ in (first, second)]
-    vertices = np.vstack([first[0], second[0] + 100])
-    triangles = np.vstack([first[1], second[1] + len(first[0])])
-    together = improved(vertices, triangles, np.repeat([0, 1], [len(first[1]), len(second[1])]))
-    for number, (v, t, _, _) in enumerate(alone):
-        part = together[1][together[2] == number]
-        assert len(part) == len(t)
-        offset = 100 * number
-        key = np.sort(element_quality(together[0] - offset, part))
-        np.testing.assert_allclose(key, np.sort(element_quality(v, t)), atol=1e-6)
+@pytest.mark.parametrize("last", [True, False])
+@pytest.mark.parametrize("small", [0, 60, 1000])
+def test_domains_do_not_see_each_other(small, last, monkeypatch):
+    """Small and large ones, that have more or fewer turns and choices, in one batch."""
+    monkeypatch.setattr(remeshing, "_SMALL", small)
+    monkeypatch.setattr(remeshing, "_SMALL_BEFORE", small)
+    grids = [disturbed_grid(size, seed) for size, seed in ((7, 10), (5, 11), (9, 12))]
+    assert sorted(len(triangles) > 60 for _, triangles, _ in grids) == [False, True, True]
+    alone = [improved(v, t, np.zeros(len(t), int), last) for v, t, _ in grids]
+    first = np.cumsum([0] + [len(v) for v, _, _ in grids])
+    triangles = np.vstack([t + n for (_, t, _), n in zip(grids, first[:-1], strict=True)])
+    domain = np.repeat(np.arange(3), [len(t) for _, t, _ in grids])
+    vertices, triangles, domain, fallbacks = improved(np.vstack([v for v, _, _ in grids]), triangles, domain, last)
+    for number, (v, t, _, fell) in enumerate(alone):
+        here, there = vertices[triangles[domain == number]], v[t]
+        assert np.array_equal(*(np.unique(of.reshape(-1, 6), axis=0) for of in (here, there)))
+        assert fallbacks[number] == fell[0]
+
+
+def test_a_domain_without_triangles_changes_nothing():
+    vertices, triangles, _ = disturbed_grid(5, 11)
+    one, other = (improved(vertices, triangles, np.full(len(triangles), number)) for number in (0, 2))
+    assert np.array_equal(one[0], other[0]) and np.array_equal(one[1], other[1])
