@@ -41,6 +41,7 @@ def test_domains_do_not_see_each_other(small, last, monkeypatch):
     """Small and large ones, that have more or fewer turns and choices, in one batch."""
     monkeypatch.setattr(remeshing, "_SMALL", small)
     monkeypatch.setattr(remeshing, "_SMALL_BEFORE", small)
+    monkeypatch.setattr(remeshing, "_MORE", (0,))
     grids = [disturbed_grid(size, seed) for size, seed in ((7, 10), (5, 11), (9, 12))]
     assert sorted(len(triangles) > 60 for _, triangles, _ in grids) == [False, True, True]
     alone = [improved(v, t, np.zeros(len(t), int), last) for v, t, _ in grids]
