@@ -101,10 +101,10 @@ def recording() -> Iterator[Record]:
 
 
 def _recorded_cells(call: Callable, kind: str, found: Record) -> Callable:
-    def mesh_cells(points, cells, edge_length, watch, more=(0,)):
+    def mesh_cells(points, cells, edge_length, watch, more=(0,), **options):
         contour, n = _padded(points[cells]), (cells >= 0).sum(axis=1)
         found.contours.append(Pool(contour, n, edge_length, np.full(len(n), KINDS.index(kind), dtype=np.int8)))
-        return call(points, cells, edge_length, watch, more)
+        return call(points, cells, edge_length, watch, more, **options)
 
     return mesh_cells
 

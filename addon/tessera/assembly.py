@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from .cavity import next_vertices
-from .roles import THOROUGH
+from .roles import THOROUGH, Roles
 from .scheme import contours_in_steps
 from .stars import total_in_turn
 from .steps import Steps
@@ -20,17 +20,18 @@ def mesh_cells(
     edge_length: np.ndarray,
     watch: Stopwatch,
     more: tuple[int, ...] = (0,),
+    roles: Roles = THOROUGH,
 ) -> Steps[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
     """Put every cell through the scheme.
 
     points: (p, 2); cells: (c, N) int, counter-clockwise vertex numbers, padded with -1, 3 to 16 each; edge_length:
-    (c,); more: as `contours_in_steps` takes it, the c meshes of which are several times as many then. Returns vertices
-    (n, 2), the points first and then the inner vertices; triangles (m, 3) int64; the number of each triangle's mesh
-    (m,); fallbacks of each mesh (c,).
+    (c,); more, roles: as `contours_in_steps` takes them, the c meshes of which are several times as many then. Returns
+    vertices (n, 2), the points first and then the inner vertices; triangles (m, 3) int64; the number of each triangle's
+    mesh (m,); fallbacks of each mesh (c,).
     """
     n_contour = (cells >= 0).sum(axis=1)
     contours = points[np.maximum(cells, 0)]
-    meshes = yield from contours_in_steps(contours, n_contour, edge_length, watch, more=more, roles=THOROUGH)
+    meshes = yield from contours_in_steps(contours, n_contour, edge_length, watch, more=more, roles=roles)
     n_contour, cells = np.repeat(n_contour, len(more)), np.repeat(cells, len(more), axis=0)
     row, k = np.nonzero(np.arange(meshes.inner.shape[1]) < meshes.n_inner[:, None])
     width = int((n_contour + meshes.n_inner).max(initial=3))

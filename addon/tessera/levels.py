@@ -13,6 +13,7 @@ from .gradation import Target
 from .outlines import Outlines
 from .refinement import Sizing, refine
 from .remeshing import improve
+from .roles import SHIPPED, THOROUGH, Roles
 from .sizing import grade_from_edges
 from .steps import Progress, Steps, within
 from .stopwatch import Stopwatch
@@ -91,7 +92,9 @@ def _mesh_levels(coarsening: Coarsening, passes: int, watch: Stopwatch) -> Steps
     top = int(coarsening.levels[domain[0]])
     # A level has about four times as many elements as the one before.
     ends = 0.25 ** np.arange(top, -1, -1.0)
-    meshes, number = yield from within(_mesh_coarse(coarsening, top, watch), 0.0, ends[0] / 4)
+    # Without improvement, in haste, NN2's passes go over cells once.
+    roles = THOROUGH if passes else SHIPPED
+    meshes, number = yield from within(_mesh_coarse(coarsening, top, watch, roles), 0.0, ends[0] / 4)
     vertices, triangles, region, fallbacks = meshes.vertices, meshes.triangles, meshes.region, meshes.fallbacks
     fixed, failed = meshes.fixed, []
     for level in range(top, -1, -1):
@@ -100,7 +103,7 @@ def _mesh_levels(coarsening: Coarsening, passes: int, watch: Stopwatch) -> Steps
         arcs = coarsening.arcs(level, number) if level < top else None
         sizing = _sizing(coarsening, level)
         # The regions of one graph fail together.
-        refinement = refine(vertices, triangles, together[region], sizing, watch, arcs, fixed)
+        refinement = refine(vertices, triangles, together[region], sizing, watch, arcs, fixed, roles)
         refined = yield from within(refinement, end / 4, middle)
         np.add.at(fallbacks, region, refined.fallbacks)
         number = refined.number if arcs else number
@@ -140,7 +143,9 @@ def _sizing(coarsening: Coarsening, level: int) -> Sizing:
     return lambda points, region: sizing(points, together[region])
 
 
-def _mesh_coarse(coarsening: Coarsening, top: int, watch: Stopwatch) -> Steps[tuple[RegionMeshes, np.ndarray]]:
+def _mesh_coarse(
+    coarsening: Coarsening, top: int, watch: Stopwatch, roles: Roles
+) -> Steps[tuple[RegionMeshes, np.ndarray]]:
     """The mesh of the coarsest level, and the number of the outlines' point that each of its vertices is, or -1."""
     target, outlines = coarsening.target, coarsening.at_level(top)
     domain = outlines.domains
@@ -154,7 +159,8 @@ def _mesh_coarse(coarsening: Coarsening, top: int, watch: Stopwatch) -> Steps[tu
         else:
             lengths = wanted_edge_lengths(division.points, division.cells, division.owner, wanted)
     yield Progress("division", 0.0)
-    vertices, triangles, cell, fallbacks = yield from mesh_cells(division.points, division.cells, lengths, watch)
+    meshing = mesh_cells(division.points, division.cells, lengths, watch, roles=roles)
+    vertices, triangles, cell, fallbacks = yield from meshing
     fallbacks = np.bincount(division.owner, fallbacks, minlength=len(domain)).astype(np.int64)
     number = np.full(len(vertices), -1)
     number[given] = np.flatnonzero(coarsening.level >= top)

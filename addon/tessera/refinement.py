@@ -22,6 +22,7 @@ from .finer import Arcs
 from .halving import find_halved, four_elements
 from .quality import element_quality
 from .relaxation import relax
+from .roles import THOROUGH, Roles
 from .scheme import LARGEST_CONTOUR
 from .steps import Steps, within
 from .stopwatch import Stopwatch
@@ -64,11 +65,13 @@ def refine(
     watch: Stopwatch,
     arcs: Arcs | None = None,
     fixed: np.ndarray | None = None,
+    roles: Roles = THOROUGH,
 ) -> Steps[Refined]:
     """Refine a mesh until its inner edges follow the sizing function, and boundary and fixed ones the arcs, if any.
 
     vertices: (n, 2); triangles: (m, 3); domain: (m,) int of each triangle; sizing: (k, 2) points and the domains (k,)
-    that they are in -> (k,) wanted edge lengths; fixed: (f, 2) edges that are split by arcs alone, as the boundary is.
+    that they are in -> (k,) wanted edge lengths; fixed: (f, 2) edges that are split by arcs alone, as the boundary is;
+    roles: the networks that are asked.
     """
     parent = np.arange(len(triangles))
     fallbacks = np.zeros(len(triangles), dtype=np.int64)
@@ -107,7 +110,7 @@ def refine(
             arcs, bad = None, _unfit(points, cells, np.append(number, places))
             failed = np.unique(domain[parent[bad]])
             split &= ~np.isin(domain[parent], failed)
-        meshing = _mesh_split(points, cells, split, len(vertices), watch)
+        meshing = _mesh_split(points, cells, split, len(vertices), watch, roles)
         vertices, new, row, fell = yield from within(meshing, start, end)
         number = np.concatenate([number, places, np.full(len(vertices) - len(points), -1)])
         np.add.at(fallbacks, parent, fell)
@@ -165,7 +168,7 @@ def _unfit(points: np.ndarray, cells: np.ndarray, number: np.ndarray) -> np.ndar
 
 
 def _mesh_split(
-    points: np.ndarray, cells: np.ndarray, split: np.ndarray, first: int, watch: Stopwatch
+    points: np.ndarray, cells: np.ndarray, split: np.ndarray, first: int, watch: Stopwatch, roles: Roles
 ) -> Steps[tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]:
     """Mesh the split ones (m,) of the sub-contours (m, N); first: from which points are counted that were inserted.
 
@@ -175,7 +178,7 @@ def _mesh_split(
     rest = np.flatnonzero(split & ~halved)
     contours, fallbacks = cells[rest, :LARGEST_CONTOUR], np.zeros(len(cells), dtype=np.int64)
     lengths = mean_edge_lengths(points, contours)
-    vertices, triangles, owner, fallbacks[rest] = yield from mesh_cells(points, contours, lengths, watch)
+    vertices, triangles, owner, fallbacks[rest] = yield from mesh_cells(points, contours, lengths, watch, roles=roles)
     triangles = np.concatenate([four_elements(cells[halved]), triangles])
     return vertices, triangles, np.concatenate([np.repeat(np.flatnonzero(halved), 4), rest[owner]]), fallbacks
 
