@@ -146,9 +146,7 @@ names the command that makes its numbers; they are kept in `training/paper/resul
 Gmsh {gmsh}, Delaunay, contour edges frozen, one size for the whole contour (`training/reference.py`); l_s is
 {l_s[0]:g} to {l_s[-1]:g}, seeds of contours are {seeds["train"]} (training) and {seeds["test"]} (tests). The paper's
 networks are called by `tessera.mesh_contour(points, l, networks="paper")`, from `paper_models/`; "paper*" takes NN3*
-for NN3. Figs. 19 to 27 and the speeds were measured on 2026-11-23, before the shipped networks were made again for
-speed, with three further passes of NN2 in place of four; how good those of today are is in
-[results/scheme.md](results/scheme.md). Table 2 is today's.
+for NN3.
 
 e = (q_reference − q) / q_reference in per cent, ē its mean over meshes, ± its standard error; negative is better than
 the reference. Test populations are {test_sizes(data["test"])}. Test groups have as many meshes as 95 % confidence and
