@@ -221,7 +221,7 @@ def test_where_every_domain_fails_a_level_all_start_again_with_one_less(monkeypa
     loops, failures = [spaced(128), spaced(120)], []
     refine = tessera.levels.refine
 
-    def unfit(vertices, triangles, domain, sizing, watch, arcs=None, fixed=None):
+    def unfit(vertices, triangles, domain, sizing, watch, arcs=None, fixed=None, roles=None):
         refined = yield from refine(vertices, triangles, domain, sizing, watch, arcs, fixed)
         if arcs is None or len(failures) == times:
             return refined
