@@ -56,7 +56,7 @@ def improve(
     tried = np.zeros(len(vertices), dtype=bool), np.zeros(len(vertices), dtype=bool)
     n_elements = np.bincount(domain)
     small = n_elements <= (_SMALL if last else _SMALL_BEFORE)
-    turns = np.where(n_elements == 0, 0, np.where(small, *_TURNS if last else _TURNS_BEFORE))
+    turns = np.where(n_elements == 0, 0, np.where(small, *(_TURNS if last else _TURNS_BEFORE)))
     most = turns.max()
     for turn in range(most):
         quality = element_quality(vertices, triangles)
@@ -65,13 +65,13 @@ def improve(
             break
         for number in (0, 1):
             tried[number][triangles[(patch >= 0) & (kind[patch] == number)]] = True
-        contours, patch = _worthwhile(contours, patch, quality, domain, small, turn < turns)
+        contours, patch, home = _worthwhile(contours, patch, quality, domain, small, turn < turns)
         # A domain that has nothing worth a try is done.
-        turns[np.bincount(_homes(patch, domain, len(contours)), minlength=len(turns)) == 0] = 0
+        turns[np.bincount(home, minlength=len(turns)) == 0] = 0
         if not len(contours):
             break
         start, end = (_RELAXED + (1 - _RELAXED) * (turn + n) / most for n in (0, 1))
-        remesh = _remesh(vertices, triangles, domain, quality, contours, patch, small, sizing, watch)
+        remesh = _remesh(vertices, triangles, domain, quality, contours, patch, home, small, sizing, watch)
         found = yield from within(remesh, start, end)
         np.add.at(fallbacks, found.homes, found.fallbacks)
         triangles, domain = found.triangles, found.domain
@@ -93,27 +93,22 @@ def _worthwhile(
     domain: np.ndarray,
     small: np.ndarray,
     going: np.ndarray,
-) -> tuple[np.ndarray, np.ndarray]:
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """The contours of patches (c, N), and each element's patch (m,) or -1, without those that are not worth a try.
 
+    Returns the domains (c,) of those that are, too.
     small, going: (d,) bool, which domains are small, and which have this turn.
     """
     taken = np.flatnonzero(patch >= 0)
     worth = _worth(quality[taken], patch[taken], len(contours))
-    home = _homes(patch, domain, len(contours))
+    home = np.zeros(len(contours), dtype=domain.dtype)
+    home[patch[taken]] = domain[taken]
     n_elements = np.bincount(domain)
     good, bad = (np.where(small, *limits)[home] for limits in (_GOOD, _BAD))
     poor = (worth < good) & going[home]
     poor &= (worth < bad) | (np.bincount(home[poor], minlength=len(n_elements)) > _FEW * n_elements)[home]
     anew = np.append(np.where(poor, np.cumsum(poor) - 1, -1), -1)
-    return contours[poor], anew[patch]
-
-
-def _homes(patch: np.ndarray, domain: np.ndarray, count: int) -> np.ndarray:
-    """(count,) the domain of each patch."""
-    home, taken = np.zeros(count, dtype=domain.dtype), patch >= 0
-    home[patch[taken]] = domain[taken]
-    return home
+    return contours[poor], anew[patch], home[poor]
 
 
 @dataclass(frozen=True)
@@ -135,13 +130,13 @@ def _remesh(
     quality: np.ndarray,
     contours: np.ndarray,
     patch: np.ndarray,
+    home: np.ndarray,
     small: np.ndarray,
     sizing: Sizing,
     watch: Stopwatch,
 ) -> Steps[_Remeshed]:
-    """Mesh patches (c, N) again, once; patch: (m,) the one that each element is in, or -1; small: as `_worthwhile`."""
+    """Mesh patches (c, N) of domains `home` (c,) again, once; patch, small: as of `_worthwhile`."""
     n, taken = len(contours), np.flatnonzero(patch >= 0)
-    home = _homes(patch, domain, n)
     # A patch is no reason for smaller elements than are wanted, though its own edges may be shorter.
     lengths = np.maximum(mean_edge_lengths(vertices, contours), sizing(middles(vertices, contours), home))
     more = _ALL_MORE if small[home].any() else _MORE
