@@ -1,6 +1,7 @@
 """Where to cut polygons in two: the choice of one chord between two vertices for each polygon of a batch."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -12,7 +13,8 @@ _ALL_PAIRS = 64
 _ENDS = 32
 # How many of the pairs with the best first cost are looked at closely, and how many if none of them is possible.
 _SHORTLISTS = (24, 600)
-_BLOCK = 400_000
+# Values of one kind at a time, so that they stay in the processor's cache.
+_BLOCK = 1 << 15
 # A chord is safe from rounding if everything else is farther away than this share of the polygon's size.
 _SAFE = 1e-9
 _SIXTY, _THIRTY = np.pi / 3, np.pi / 6
@@ -29,16 +31,28 @@ class Chords:
 
 @dataclass(frozen=True)
 class _Batch:
-    """Polygons in local coordinates, with what the costs of many chords have in common; (P, W) unless noted."""
+    """Polygons in local coordinates, with what the costs of many chords have in common.
 
-    points: np.ndarray  # (P, W, 2) relative to the first vertex; padding repeats it
-    size: np.ndarray  # (P,)
-    edge_length: np.ndarray  # (P,)
-    safe: np.ndarray  # (P,) distance
+    All of slots are (P, W + 1): a polygon's vertices, then the first again, as often as there is room.
+    """
+
+    x: np.ndarray  # relative to the first vertex
+    y: np.ndarray
+    size: np.ndarray  # (P, 1)
+    edge_length: np.ndarray  # (P, 1)
+    safe: np.ndarray  # (P, 1) distance
     spacing: np.ndarray  # mean length of the two edges at each vertex
     onward: np.ndarray  # direction of the edge that leaves the vertex
     interior: np.ndarray  # interior angle
     swept: np.ndarray  # twice the area swept from the first vertex up to this one
+
+    def rows(self, rows: slice | np.ndarray) -> "_Batch":
+        """Some of the polygons."""
+        return _Batch(*(getattr(self, name)[rows] for name in _Batch.__dataclass_fields__))
+
+    def flat(self, slots: np.ndarray) -> np.ndarray:
+        """Slots (P, C) as places in the arrays of slots."""
+        return slots + self.x.shape[1] * np.arange(len(self.x))[:, None]
 
 
 def choose_chords(corners: np.ndarray, size: np.ndarray, edge_length: np.ndarray) -> Chords:
@@ -53,7 +67,7 @@ def choose_chords(corners: np.ndarray, size: np.ndarray, edge_length: np.ndarray
     for shortlist in _SHORTLISTS:
         if len(open_rows) == 0:
             break
-        first, second = _best_of_many(_rows(batch, open_rows), shortlist)
+        first, second = _best_of_many(batch.rows(open_rows), shortlist)
         start[open_rows], end[open_rows] = first, second
         open_rows = open_rows[first < 0]
     for row in open_rows:  # no Python loop in ordinary cases
@@ -68,59 +82,67 @@ def choose_chords(corners: np.ndarray, size: np.ndarray, edge_length: np.ndarray
 
 def _prepare(corners: np.ndarray, size: np.ndarray, edge_length: np.ndarray) -> _Batch:
     n_rows, width = corners.shape[:2]
-    slot = np.arange(width)
-    inside = slot < size[:, None]
-    points = np.where(inside[..., None], corners - corners[:, :1], 0.0)
-    row = np.arange(n_rows)[:, None]
-    after = points[row, np.where(slot + 1 < size[:, None], slot + 1, 0)]
-    before = points[row, np.where(slot > 0, slot - 1, size[:, None] - 1)]
-    leaves, comes = after - points, before - points
-    onward = np.arctan2(leaves[..., 1], leaves[..., 0])
-    interior = (np.arctan2(comes[..., 1], comes[..., 0]) - onward) % (2 * np.pi)
-    spacing = 0.5 * (np.hypot(leaves[..., 0], leaves[..., 1]) + np.hypot(comes[..., 0], comes[..., 1]))
+    size = size[:, None]
+    inside = np.arange(width + 1) < size
+    x, y = np.zeros((n_rows, width + 1)), np.zeros((n_rows, width + 1))
+    for axis, own in enumerate((x, y)):
+        own[:, :width] = corners[..., axis] - corners[:, :1, axis]
+        own[~inside] = 0.0
+    last = (np.arange(n_rows), size[:, 0] - 1)
+    after_x, after_y, before_x, before_y = (np.roll(own, shift, axis=1) for shift in (-1, 1) for own in (x, y))
+    before_x[:, 0], before_y[:, 0] = x[last], y[last]
+    leaves_x, leaves_y, comes_x, comes_y = after_x - x, after_y - y, before_x - x, before_y - y
+    onward = np.arctan2(leaves_y, leaves_x)
+    interior = _around(np.arctan2(comes_y, comes_x) - onward)
     # Padding slots get any positive spacing.
-    spacing = np.where(inside, spacing, 1.0)
-    sweep = np.where(inside, points[..., 0] * after[..., 1] - points[..., 1] * after[..., 0], 0.0)
-    swept = np.concatenate([np.zeros((n_rows, 1)), np.cumsum(sweep, axis=1)[:, :-1]], axis=1)
-    largest = np.abs(points).max(axis=(1, 2))
+    spacing = np.where(inside, 0.5 * (np.hypot(leaves_x, leaves_y) + np.hypot(comes_x, comes_y)), 1.0)
+    swept = np.zeros((n_rows, width + 1))
+    np.cumsum((x * after_y - y * after_x)[:, :-1], axis=1, out=swept[:, 1:])
+    largest = np.maximum(np.abs(x), np.abs(y)).max(axis=1)
     safe = _SAFE * largest + 64 * np.spacing(np.abs(corners).max(axis=(1, 2)))
-    return _Batch(points, size, edge_length, safe, spacing, onward, interior, swept)
+    return _Batch(x, y, size, edge_length[:, None], safe[:, None], spacing, onward, interior, swept)
 
 
-def _rows(batch: _Batch, rows: np.ndarray) -> _Batch:
-    return _Batch(*(getattr(batch, name)[rows] for name in _Batch.__dataclass_fields__))
+def _around(angle: np.ndarray) -> np.ndarray:
+    """Angles from 0 to a full turn."""
+    return angle - 2 * np.pi * np.floor(angle / (2 * np.pi))
 
 
 def _best_of_many(batch: _Batch, shortlist: int) -> tuple[np.ndarray, np.ndarray]:
     """The best chord (P,), (P,) of each polygon among the `shortlist` pairs of the lowest first cost, or -1, -1."""
-    width = batch.points.shape[1]
+    n_rows, width = len(batch.x), batch.x.shape[1] - 1
     n_pairs = width * (width - 1) // 2 if width <= _ALL_PAIRS else width * _ENDS
-    found = []
-    for rows in np.array_split(np.arange(len(batch.size)), 1 + len(batch.size) * n_pairs // _BLOCK):
-        block = _rows(batch, rows)
+    first, second = np.empty(n_rows, dtype=np.int64), np.empty(n_rows, dtype=np.int64)
+    at_a_time = max(1, _BLOCK // n_pairs)
+    for rows in (slice(k, k + at_a_time) for k in range(0, n_rows, at_a_time)):
+        block = batch.rows(rows)
         start, end = _pairs(block)
         most = max(4 * shortlist, start.shape[1] // 5)
         start, end, cost = _keep_best(most, start, end, _cut_cost(block, start, end))
         start, end, cost = _keep_best(shortlist, start, end, _first_cost(block, start, end, cost))
         cost = cost + _close_cost(block, start, end, cost)
-        best = np.argmin(cost, axis=1)[:, None]
-        possible = np.isfinite(np.take_along_axis(cost, best, axis=1))
-        found.append([np.where(possible, np.take_along_axis(a, best, axis=1), -1)[:, 0] for a in (start, end)])
-    first, second = (np.concatenate(parts) for parts in zip(*found, strict=True))
+        row, best = np.arange(len(cost)), np.argmin(cost, axis=1)
+        possible = np.isfinite(cost[row, best])
+        first[rows], second[rows] = (np.where(possible, slots[row, best], -1) for slots in (start, end))
     return first, second
+
+
+@cache
+def _all_pairs(width: int) -> tuple[np.ndarray, np.ndarray]:
+    return np.triu_indices(width, 1)
 
 
 def _pairs(batch: _Batch) -> tuple[np.ndarray, np.ndarray]:
     """Pairs of vertex slots to consider, (P, C) and (P, C); padding slots among them."""
-    n_rows, width = batch.points.shape[:2]
+    n_rows, width = len(batch.x), batch.x.shape[1] - 1
     if width <= _ALL_PAIRS:
-        start, end = np.triu_indices(width, 1)
+        start, end = _all_pairs(width)
         return np.broadcast_to(start, (n_rows, len(start))), np.broadcast_to(end, (n_rows, len(end)))
     # Half of the ends where the polygon turns inwards most, half evenly spaced.
     half = _ENDS // 2
-    inside = np.arange(width) < batch.size[:, None]
-    reflex = np.argsort(np.where(inside, -batch.interior, 0.0), axis=1, kind="stable")[:, :half]
-    even = np.arange(half) * batch.size[:, None] // half
+    inside = np.arange(width) < batch.size
+    reflex = np.argsort(np.where(inside, -batch.interior[:, :width], 0.0), axis=1, kind="stable")[:, :half]
+    even = np.arange(half) * batch.size // half
     ends = np.concatenate([reflex, even], axis=1)
     start = np.repeat(ends, width, axis=1)
     end = np.broadcast_to(np.tile(np.arange(width), 2 * half), start.shape)
@@ -132,44 +154,43 @@ def _keep_best(n: int, start: np.ndarray, end: np.ndarray, cost: np.ndarray):
     if cost.shape[1] <= n:
         return start, end, cost
     best = np.argpartition(cost, n, axis=1)[:, :n]
-    return tuple(np.take_along_axis(a, best, axis=1) for a in (start, end, cost))
+    row = np.arange(len(cost))[:, None]
+    return start[row, best], end[row, best], cost[row, best]
 
 
 def _cut_cost(batch: _Batch, start: np.ndarray, end: np.ndarray) -> np.ndarray:
     """Cost (P, C) of cuts: low for short ones between large parts and at reflex corners; infinite if impossible."""
-    row = np.arange(len(start))[:, None]
-    ax, ay = batch.points[row, start, 0], batch.points[row, start, 1]
-    bx, by = batch.points[row, end, 0], batch.points[row, end, 1]
+    first, second = batch.flat(start), batch.flat(end)
+    ax, ay, bx, by = (own.take(at) for at in (first, second) for own in (batch.x, batch.y))
     squared = (bx - ax) ** 2 + (by - ay) ** 2
-    swept = batch.swept[row, end] - batch.swept[row, start] + bx * ay - by * ax
-    total = batch.swept[np.arange(len(start)), batch.size - 1][:, None]
-    smaller = 0.5 * np.minimum(swept, total - swept)
+    swept = batch.swept.take(second) - batch.swept.take(first) + (bx * ay - by * ax)
+    smaller = 0.5 * np.minimum(swept, batch.swept[:, -1:] - swept)
     n_edges = end - start
-    possible = (smaller > 0) & (squared > 16 * batch.safe[:, None] ** 2) & (end < batch.size[:, None])
-    possible &= (n_edges >= 2) & (batch.size[:, None] - n_edges >= 2)
+    possible = (smaller > 0) & (squared > 16 * batch.safe**2) & (end < batch.size)
+    possible &= (n_edges >= 2) & (batch.size - n_edges >= 2)
     with np.errstate(divide="ignore", invalid="ignore"):
         cost = np.log(squared / smaller)
     reflex = _reflex(batch.interior)
-    return np.where(possible, cost - reflex[row, start] - reflex[row, end], np.inf)
+    return np.where(possible, cost - reflex.take(first) - reflex.take(second), np.inf)
 
 
 def _first_cost(batch: _Batch, start: np.ndarray, end: np.ndarray, cut_cost: np.ndarray) -> np.ndarray:
     """Cost (P, C) of cuts as chords, but for vertices near them; infinite where they leave the polygon at an end."""
-    row = np.arange(len(start))[:, None]
-    along = batch.points[row, end] - batch.points[row, start]
-    length = np.hypot(along[..., 0], along[..., 1])
-    natural = natural_segments(length, batch.spacing[row, start], batch.spacing[row, end], batch.edge_length[:, None])
+    first, second = batch.flat(start), batch.flat(end)
+    along_x, along_y = (own.take(second) - own.take(first) for own in (batch.x, batch.y))
+    length = np.hypot(along_x, along_y)
+    natural = natural_segments(length, batch.spacing.take(first), batch.spacing.take(second), batch.edge_length)
     n_edges = end - start
-    most = np.maximum(np.minimum(n_edges, batch.size[:, None] - n_edges) - 1, 1)
+    most = np.maximum(np.minimum(n_edges, batch.size - n_edges) - 1, 1)
     with np.errstate(divide="ignore"):
-        stretch = np.log(natural / np.clip(np.rint(natural), 1, most))
+        stretch = np.log(natural / np.minimum(np.maximum(np.rint(natural), 1), most))
         cost = cut_cost + 2.0 * stretch**2
-    direction = np.arctan2(along[..., 1], along[..., 0])
-    for slot, heading in ((start, direction), (end, direction + np.pi)):
-        first = (heading - batch.onward[row, slot]) % (2 * np.pi)
-        second = batch.interior[row, slot] - first
-        leaves_inside = (first > 1e-4) & (second > 1e-4)
-        cost = np.where(leaves_inside, cost + end_cost(first) + end_cost(second), np.inf)
+    direction = np.arctan2(along_y, along_x)
+    for slot, heading in ((first, direction), (second, direction + np.pi)):
+        before = _around(heading - batch.onward.take(slot))
+        behind = batch.interior.take(slot) - before
+        leaves_inside = (before > 1e-4) & (behind > 1e-4)
+        cost = np.where(leaves_inside, cost + end_cost(before) + end_cost(behind), np.inf)
     return cost
 
 
@@ -187,7 +208,8 @@ def _close_cost(batch: _Batch, start: np.ndarray, end: np.ndarray, first_cost: n
     """Further cost (P, C): vertices near the chord; infinite if it is not safely inside the polygon."""
     result = np.full(start.shape, np.inf)
     row, column = np.nonzero(np.isfinite(first_cost))
-    for part in np.array_split(np.arange(len(row)), 1 + len(row) * batch.points.shape[1] // _BLOCK):
+    at_a_time = max(1, _BLOCK // batch.x.shape[1])
+    for part in (slice(k, k + at_a_time) for k in range(0, len(row), at_a_time)):
         r, c = row[part], column[part]
         result[r, c] = _clearance_cost(batch, r, start[r, c], end[r, c])
     return result
@@ -198,38 +220,36 @@ def _clearance_cost(batch: _Batch, row: np.ndarray, start: np.ndarray, end: np.n
 
     In floating point, but with a margin far above its errors: what passes is certainly inside.
     """
-    points, size, safe = batch.points[row], batch.size[row][:, None], batch.safe[row][:, None]
-    slot = np.arange(points.shape[1])
+    x, y, size, safe = batch.x[row], batch.y[row], batch.size[row], batch.safe[row]
     k = np.arange(len(row))
-    a = points[k, start]
-    along = points[k, end] - a
-    length = np.hypot(along[:, 0], along[:, 1])[:, None]
-    unit = along / length
-    offset = points - a[:, None]
-    forward = offset[..., 0] * unit[:, :1] + offset[..., 1] * unit[:, 1:]
-    aside = offset[..., 1] * unit[:, :1] - offset[..., 0] * unit[:, 1:]
-    beyond = np.maximum(np.maximum(-forward, forward - length), 0.0)
-    distance = np.hypot(beyond, aside)
-    other = (slot < size) & (slot != start[:, None]) & (slot != end[:, None])
-    spacing = graded_spacing(
-        np.clip(forward, 0, length),
-        length,
-        batch.spacing[row, start][:, None],
-        batch.spacing[row, end][:, None],
-        batch.edge_length[row][:, None],
-    )
-    relative = np.min(np.where(other, distance / spacing, np.inf), axis=1)
-    safe_from_vertices = np.min(np.where(other, distance, np.inf), axis=1) > safe[:, 0]
+    x, y = x - x[k, start][:, None], y - y[k, start][:, None]
+    unit_x, unit_y = x[k, end][:, None], y[k, end][:, None]
+    length = np.hypot(unit_x, unit_y)
+    unit_x, unit_y = unit_x / length, unit_y / length
+    forward, aside = x * unit_x + y * unit_y, y * unit_x - x * unit_y
+    nearest = np.minimum(np.maximum(forward, 0.0), length)
+    squared = (forward - nearest) ** 2 + aside * aside
+    away = np.arange(x.shape[1]) < size  # neither an end of the chord nor padding
+    away[k, start] = away[k, end] = False
+    squared[~away] = np.inf
+    at_start, at_end = (batch.spacing[row, slot][:, None] for slot in (start, end))
+    spacing = graded_spacing(nearest, length, at_start, at_end, batch.edge_length[row])
+    relative = np.sqrt(np.min(squared / (spacing * spacing), axis=1))
+    safe_from_vertices = squared.min(axis=1) > safe[:, 0] ** 2
 
-    following = np.where(slot + 1 < size, slot + 1, 0)
-    aside_next, forward_next, other_next = (v[k[:, None], following] for v in (aside, forward, other))
-    apart = other & other_next
-    opposite = (aside > 0) != (aside_next > 0)
-    flat = (np.abs(aside) <= safe) & (np.abs(aside_next) <= safe)
+    # Edges, from each slot to the next, that are not next to an end of the chord.
+    apart = away.copy()
+    apart[k, np.where(start > 0, start, size[:, 0]) - 1] = apart[k, end - 1] = False
+    apart, before, behind = apart[:, :-1], slice(0, -1), slice(1, None)
+    crosses = (aside[:, before] > 0) != (aside[:, behind] > 0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        meets = forward + aside / (aside - aside_next) * (forward_next - forward)
-    crossing = opposite & (meets >= -safe) & (meets <= length + safe)
-    along_it = flat & (np.minimum(forward, forward_next) <= length) & (np.maximum(forward, forward_next) >= 0)
-    blocked = np.any(apart & (crossing | along_it), axis=1)
+        share = aside[:, before] / (aside[:, before] - aside[:, behind])
+        meets = forward[:, before] + share * (forward[:, behind] - forward[:, before])
+    crosses &= (meets >= -safe) & (meets <= length + safe)
+    flat = np.abs(aside) <= safe
+    along_it = flat[:, before] & flat[:, behind]
+    along_it &= np.minimum(forward[:, before], forward[:, behind]) <= length
+    along_it &= np.maximum(forward[:, before], forward[:, behind]) >= 0
+    blocked = (apart & (crosses | along_it)).any(axis=1)
     narrow = np.maximum(0.6 - relative, 0) / 0.6
     return np.where(safe_from_vertices & ~blocked, 4.0 * narrow**2 + 2.0 * narrow, np.inf)
