@@ -8,9 +8,10 @@ from dataclasses import dataclass, field, fields
 
 import numpy as np
 
-from tessera import levels, meshing, refinement, relaxation, remeshing, triangulation
+from tessera import levels, refinement, relaxation, remeshing, triangulation
 from tessera.cavity import next_vertices
-from tessera.settings import Settings
+from tessera.domains import mesh_domains
+from tessera.settings import Request, Settings
 from tessera.transform import superimpose
 
 from . import contours
@@ -68,7 +69,7 @@ def record(domains: Sequence[Domain]) -> Record:
     with recording() as found:
         for keep in (False, True):
             loops = _apart([domain.loop for domain in domains if domain.keep == keep])
-            meshing.mesh_domains(loops, 1.0, Settings(boundary="keep" if keep else "resample"))
+            mesh_domains([Request(own, 1.0) for own in loops], Settings(boundary="keep" if keep else "resample"))
     return found
 
 

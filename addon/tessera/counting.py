@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -40,40 +40,83 @@ def expected_edge_length(loops: Sequence[ArrayLike], n_triangles: int) -> float:
     return (beside + (beside**2 + 4 * wanted * area) ** 0.5) / (2 * wanted)
 
 
-def mesh_to_count(loops: Sequence[ArrayLike], n_triangles: int, mesh_at: Callable[[float], Steps[Mesh]]) -> Steps[Mesh]:
-    """Mesh until the number of triangles is within 10 % of the wanted one: gives the closest of at most six meshes.
+# Meshes those of several domains that have these numbers, at these target edge lengths.
+MeshAt = Callable[[list[int], list[float]], Steps[list[Mesh | ContourError]]]
 
-    mesh_at: takes a target edge length and meshes the loops in steps. Where corners, a kept boundary or limits of the
-    sizing leave no such mesh, the closest has a warning. Raises ContourError.
+
+def mesh_to_counts(
+    domains: Sequence[Sequence[ArrayLike]], wanted: Sequence[int], mesh_at: MeshAt
+) -> Steps[list[Mesh | ContourError]]:
+    """Mesh domains until the number of triangles of each is within 10 % of the wanted one.
+
+    Gives the closest of at most six meshes of each, or its ContourError. Where corners, a kept boundary or limits of
+    the sizing leave no such mesh, the closest has a warning.
     """
-    length = expected_edge_length(loops, n_triangles)
-    tried: list[tuple[float, float]] = []  # logarithms of the length, and of the count over the wanted one
-    best, error = None, np.inf
-    for number in range(MOST_TRIES):
-        # Nobody knows how many tries will follow: each has half of what is left.
-        mesh = yield from within(mesh_at(length), 1 - 0.5**number, 1 - 0.5 ** (number + 1))
-        ratio = mesh.report.n_triangles / n_triangles
-        if abs(ratio - 1) < error:
-            best, error = mesh, abs(ratio - 1)
-        if error <= TOLERANCE:
-            return best
-        tried.append((np.log(length), np.log(ratio)))
-        if _stuck(tried):
+    results, searches = {}, {}
+    for number, (loops, n_triangles) in enumerate(zip(domains, wanted, strict=True)):
+        try:
+            searches[number] = _Search(n_triangles, float(np.log(expected_edge_length(loops, n_triangles))))
+        except ContourError as error:
+            results[number] = error
+    for tries in range(MOST_TRIES):
+        if not searches:
             break
-        length = float(np.exp(_next(tried)))
-    warning = (
-        f"{n_triangles} triangles are wanted, and {best.report.n_triangles} is as close as meshing came: the outline's "
-        "corners, a kept boundary or the sizing's limits leave no other number"
-    )
-    return replace(best, report=replace(best.report, warnings=(*best.report.warnings, warning)))
+        # Nobody knows how many tries will follow: each has half of what is left.
+        lengths = [float(np.exp(search.length)) for search in searches.values()]
+        steps = within(mesh_at(list(searches), lengths), 1 - 0.5**tries, 1 - 0.5 ** (tries + 1))
+        made = yield from steps
+        for number, mesh in zip(list(searches), made, strict=True):
+            if not isinstance(mesh, ContourError):
+                searches[number] = searches[number].after(mesh)
+                if not searches[number].is_over:
+                    continue
+                mesh = searches[number].result()
+            results[number] = mesh
+            del searches[number]
+    results |= {number: search.result() for number, search in searches.items()}
+    return [results[number] for number in range(len(results))]
 
 
-def _stuck(tried: list[tuple[float, float]]) -> bool:
-    """Whether another length made no difference at all."""
-    return len(tried) > 1 and tried[-1][1] == tried[-2][1]
+@dataclass(frozen=True)
+class _Search:
+    """The search for a mesh of so many triangles; length: the logarithm of the target edge length to try next.
+
+    tried: logarithms of lengths, and of the counts they gave over the wanted one; best: the closest mesh.
+    """
+
+    wanted: int
+    length: float
+    tried: tuple[tuple[float, float], ...] = ()
+    best: Mesh | None = None
+
+    def after(self, mesh: Mesh) -> _Search:
+        """With what the length that was to be tried has come to."""
+        best = mesh if self.best is None or self._error(mesh) < self._error(self.best) else self.best
+        tried = (*self.tried, (self.length, float(np.log(mesh.report.n_triangles / self.wanted))))
+        return _Search(self.wanted, _next(tried), tried, best)
+
+    @property
+    def is_over(self) -> bool:
+        """Whether the best is close enough, or another length made no difference at all."""
+        stuck = len(self.tried) > 1 and self.tried[-1][1] == self.tried[-2][1]
+        return stuck or self._error(self.best) <= TOLERANCE
+
+    def result(self) -> Mesh:
+        """The best, with a warning where it is not close enough."""
+        report = self.best.report
+        if self._error(self.best) <= TOLERANCE:
+            return self.best
+        warning = (
+            f"{self.wanted} triangles are wanted, and {report.n_triangles} is as close as meshing came: the outline's "
+            "corners, a kept boundary or the sizing's limits leave no other number"
+        )
+        return replace(self.best, report=replace(report, warnings=(*report.warnings, warning)))
+
+    def _error(self, mesh: Mesh) -> float:
+        return abs(mesh.report.n_triangles / self.wanted - 1)
 
 
-def _next(tried: list[tuple[float, float]]) -> float:
+def _next(tried: Sequence[tuple[float, float]]) -> float:
     """The logarithm of the length to try next: between a longer and a shorter one, if both are known."""
     fewer = max((pair for pair in tried if pair[1] < 0), key=lambda pair: pair[1], default=None)
     more = min((pair for pair in tried if pair[1] > 0), key=lambda pair: pair[1], default=None)

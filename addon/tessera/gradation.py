@@ -6,7 +6,7 @@ the domain, and the wanted length grows from them as from any other place: h(x) 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -71,17 +71,21 @@ class Target:
 
 
 def prepare(
-    domains: dict[int, list[np.ndarray]], sizing: Sizing | None, limits: Limits, most_triangles: int
+    domains: dict[int, list[np.ndarray]], wanted: Sequence[tuple[Sizing | None, Limits]], most_triangles: int
 ) -> tuple[Target, dict[int, ContourError]]:
     """The target in each of the numbered domains, and the errors of those that have one.
 
-    domains: loops, counter-clockwise, by number; most_triangles: a domain that needs more has an error. Without a
-    sizing all lengths are the longest.
+    domains: loops, counter-clockwise, by number; wanted: of all numbers, the sizing, without which all lengths are the
+    longest, and its limits; most_triangles: a domain that needs more has an error.
     """
     size = max(domains, default=-1) + 1
-    most, least = np.full(size, limits.longest), np.full(size, limits.shortest or 0.0)
+    most = np.array([limits.longest for _, limits in wanted[:size]])
+    least = np.array([limits.shortest or 0.0 for _, limits in wanted[:size]])
     functions, places, errors = {}, [], {}
-    for number, loops in domains.items() if sizing is not None else ():
+    for number, loops in domains.items():
+        sizing, limits = wanted[number]
+        if sizing is None:
+            continue
         try:
             own, own_places, most[number], least[number] = _prepare_one(loops, sizing, limits, most_triangles)
         except ContourError as error:

@@ -1,31 +1,26 @@
-"""Domains to meshes: the whole way from a user's curves to what `tessera.mesh` returns."""
+"""What a user calls: curves to a mesh, of one domain, of regions that share edges, of a batch, of one contour."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .budget import MOST_TRIANGLES, checked_domain, checked_graph, enclosed_area
-from .constraints import Domain, planar_domains
-from .contour import clean_domains, clean_loop, edges_of, nesting
+from .constraints import Domain
+from .contour import clean_loop, edges_of
+from .domains import domains_in_steps, mesh_domains
 from .errors import ContourError
-from .flips import flip_edges
-from .gradation import Target, prepare
-from .levels import RegionMeshes, mesh_by_levels
 from .mesh import Mesh, make_mesh
-from .notices import gap_warnings, long_edge_warnings, lost_area_warnings, repeated_warnings
-from .outlines import Outlines, outlines_of, resampled
+from .notices import long_edge_warnings
 from .paper import roles_named
 from .placement import MOST_INNER
 from .scheme import LARGEST_CONTOUR, join_vertices, mesh_contours
-from .settings import Settings
-from .sizing import Limits, Sizing, checked_edge_length
-from .smoothing import checked_steps, smooth_in_steps
+from .settings import Request, Settings
+from .sizing import Sizing, checked_edge_length
+from .smoothing import checked_steps
 from .smoothing import smooth as move_downhill
-from .steps import Progress, Steps, finish, within
+from .steps import Steps, finish
 from .stopwatch import Stopwatch
 
 
@@ -69,8 +64,8 @@ def mesh(
     Raises ContourError, whose ``reason`` is a short word, for input that cannot be meshed, and a plain ValueError for
     what is no sequence of (k, 2) arrays of numbers.
     """
-    settings = Settings(sizing, min_edge_length, gradation, boundary, corner_angle, passes, flips, smooth)
-    return finish(_one_in_steps(_domain(loops, points, lines), edge_length, settings))
+    request = Request(_domain(loops, points, lines), edge_length, sizing, min_edge_length)
+    return finish(_one_in_steps(request, Settings(gradation, boundary, corner_angle, passes, flips, smooth)))
 
 
 def mesh_in_steps(
@@ -92,8 +87,8 @@ def mesh_in_steps(
 
     Closing the generator stops the work. Raises as `mesh` does, when it comes to it.
     """
-    settings = Settings(sizing, min_edge_length, gradation, boundary, corner_angle, passes, flips, smooth)
-    return _one_in_steps(_domain(loops, points, lines), edge_length, settings)
+    request = Request(_domain(loops, points, lines), edge_length, sizing, min_edge_length)
+    return _one_in_steps(request, Settings(gradation, boundary, corner_angle, passes, flips, smooth))
 
 
 def _domain(
@@ -104,8 +99,8 @@ def _domain(
     return Domain(loops, None, points, lines) if points is not None or len(lines) > 0 else loops
 
 
-def _one_in_steps(domain: Sequence[ArrayLike] | Domain, edge_length: float, settings: Settings) -> Steps[Mesh]:
-    (result,) = yield from domains_in_steps([domain], edge_length, settings)
+def _one_in_steps(request: Request, settings: Settings) -> Steps[Mesh]:
+    (result,) = yield from domains_in_steps([request], settings)
     if isinstance(result, ContourError):
         raise result
     return result
@@ -132,16 +127,16 @@ def mesh_regions(
     of the size of all lies on it. The mesh's region is the number of the region that each triangle is part of. All else
     is as of `mesh`. Raises ContourError, "overlap" for regions that overlap.
     """
-    settings = Settings(sizing, min_edge_length, gradation, boundary, corner_angle, passes, flips, smooth)
     regions = [list(region) for region in regions]
     loops = [loop for region in regions for loop in region]
     of = [number for number, region in enumerate(regions) for _ in region]
-    return finish(_one_in_steps(Domain(loops, of, points, lines), edge_length, settings))
+    request = Request(Domain(loops, of, points, lines), edge_length, sizing, min_edge_length)
+    return finish(_one_in_steps(request, Settings(gradation, boundary, corner_angle, passes, flips, smooth)))
 
 
 def mesh_many(
     domains: Sequence[Sequence[ArrayLike]],
-    edge_length: float,
+    edge_length: float | Sequence[float],
     *,
     sizing: Sizing | None = None,
     min_edge_length: float | None = None,
@@ -153,10 +148,18 @@ def mesh_many(
 ) -> list[Mesh | ContourError]:
     """Mesh a batch of domains, each as `mesh` does: a Mesh, or the ContourError that it has, for each.
 
-    Raises ContourError "edge-length" where no domain could be meshed at that length.
+    edge_length: one for all domains, or one for each. Raises ContourError "edge-length" where no domain could be meshed
+    at the one, ValueError where there is not one for each.
     """
-    settings = Settings(sizing, min_edge_length, gradation, "resample", corner_angle, passes, flips, smooth)
-    return mesh_domains([list(loops) for loops in domains], edge_length, settings)
+    domains = [list(loops) for loops in domains]
+    settings = Settings(gradation, "resample", corner_angle, passes, flips, smooth)
+    if np.ndim(edge_length) == 0:
+        Request((), edge_length, sizing, min_edge_length).checked(settings)
+        edge_length = [edge_length] * len(domains)
+    if len(edge_length) != len(domains):
+        raise ValueError(f"there are {len(domains)} domains and {len(edge_length)} edge lengths: give one for each")
+    pairs = zip(domains, edge_length, strict=True)
+    return mesh_domains([Request(domain, length, sizing, min_edge_length) for domain, length in pairs], settings)
 
 
 def mesh_contour(
@@ -198,100 +201,3 @@ def mesh_contour(
         warnings=warnings,
         seconds=watch.seconds,
     )
-
-
-def mesh_domains(
-    domains: Sequence[Sequence[ArrayLike] | Domain], edge_length: float, settings: Settings
-) -> list[Mesh | ContourError]:
-    """`domains_in_steps`, at once."""
-    return finish(domains_in_steps(domains, edge_length, settings))
-
-
-def domains_in_steps(
-    domains: Sequence[Sequence[ArrayLike] | Domain], edge_length: float, settings: Settings
-) -> Steps[list[Mesh | ContourError]]:
-    """Mesh many domains as one batch: a Mesh, or the ContourError that it has, for each."""
-    sizing, limits = settings.checked(edge_length)
-    watch = Stopwatch()
-    with watch("contours"):
-        cleaned, planar = planar_domains(domains, clean_domains([() if isinstance(d, Domain) else d for d in domains]))
-        nested = [nesting([] if isinstance(d, ContourError) or n in planar else d) for n, d in enumerate(cleaned)]
-        results = [
-            checked_graph(planar[n], limits.longest) if n in planar else checked_domain(d, nested[n], limits.longest)
-            for n, d in enumerate(cleaned)
-        ]
-    yield Progress("contours", 0.02)
-    with watch("sizing"):
-        sound = {number: result for number, result in enumerate(results) if not isinstance(result, ContourError)}
-        target, errors = prepare(sound, sizing, limits, MOST_TRIANGLES)
-        results = [errors.get(number, result) for number, result in enumerate(results)]
-    yield Progress("sizing", 0.05)
-    with watch("boundary"):
-        numbers = [number for number, result in enumerate(results) if not isinstance(result, ContourError)]
-        outlines = outlines_of(results, nested, planar, numbers)
-        if settings.boundary == "resample":
-            outlines = resampled(outlines, target, limits.corner_angle)
-        gaps = gap_warnings(*_segments(outlines), target)
-    if numbers:
-        meshes = yield from within(_finished(outlines, target, limits, settings, watch), 0.1, 1.0)
-        domain, first = outlines.domains, outlines.firsts
-        fell = np.bincount(domain, meshes.fallbacks, minlength=len(results)).astype(int)
-        parts = _parts(meshes, domain[meshes.region], numbers)
-        for number, (part, elements, region) in zip(numbers, parts, strict=True):
-            one, places = planar.get(number), target.inside(number)
-            if settings.boundary == "keep":
-                ends = one.graph.points[one.graph.edges.T] if one else edges_of(results[number])
-                warnings = long_edge_warnings(*ends, places)
-            else:
-                area = one.graph.area() if one else enclosed_area(results[number], nested[number])
-                warnings = lost_area_warnings(area, part, elements, target.most[number])
-            given = domains[number]
-            repeated = repeated_warnings(given.loops if isinstance(given, Domain) else given, results[number])
-            results[number] = make_mesh(
-                part,
-                elements,
-                region - first[number],
-                fallbacks=int(fell[number]),
-                warnings=warnings + (one.warnings if one else ()) + gaps.get(number, ()) + repeated,
-                seconds=watch.seconds,
-            )
-    return [target.errors.get(number, result) for number, result in enumerate(results)]
-
-
-def _segments(outlines: Outlines) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Start and end (s, 2) of what has vertices before meshing, edges and points alone, and the domain of each (s,)."""
-    (start, end, of), (points, home) = outlines.edges(), outlines.points()
-    domain = outlines.domains[np.concatenate([of, home])]
-    return np.concatenate([start, points]), np.concatenate([end, points]), domain
-
-
-def _finished(
-    outlines: Outlines, target: Target, limits: Limits, settings: Settings, watch: Stopwatch
-) -> Steps[RegionMeshes]:
-    """The regions' meshes, after the passes that were asked for."""
-    end = 0.8 if settings.smooth else 1.0
-    meshing = mesh_by_levels(outlines, target, limits.corner_angle, settings.passes, watch)
-    meshes = yield from within(meshing, 0.0, end)
-    vertices, triangles = meshes.vertices, meshes.triangles
-    if settings.flips:
-        with watch("flips"):
-            triangles = flip_edges(vertices, triangles, meshes.fixed)
-    if settings.smooth:
-        smoothing = smooth_in_steps(vertices, triangles, settings.smooth, meshes.region, watch, meshes.fixed)
-        vertices = yield from within(smoothing, end, 1.0)
-    return replace(meshes, vertices=vertices, triangles=triangles)
-
-
-def _parts(
-    meshes: RegionMeshes, domain: np.ndarray, numbers: list[int]
-) -> list[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-    """The vertices, the triangles and their regions of each domain by itself; vertices keep their order."""
-    order = np.argsort(domain, kind="stable")
-    triangles, region, domain = meshes.triangles[order], meshes.region[order], domain[order]
-    starts = np.searchsorted(domain, numbers)
-    ends = np.searchsorted(domain, numbers, side="right")
-    parts = []
-    for start, end in zip(starts, ends, strict=True):
-        used, local = np.unique(triangles[start:end], return_inverse=True)
-        parts.append((meshes.vertices[used], local.reshape(-1, 3), region[start:end]))
-    return parts

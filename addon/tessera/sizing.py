@@ -73,10 +73,8 @@ class Limits:
 
 
 def checked_limits(edge_length: float, min_edge_length: float | None, gradation: float, corner_angle: float) -> Limits:
-    """The limits that a user gives, the corner angle in degrees.
-
-    Raises ContourError "edge-length" for lengths that are none, and ValueError for numbers out of range.
-    """
+    """The limits that a user gives; corner_angle: in radians. Raises ContourError "edge-length" for lengths that are
+    none."""
     longest = checked_edge_length(edge_length, "target edge length")
     shortest = None if min_edge_length is None else checked_edge_length(min_edge_length, "min_edge_length")
     if shortest is not None and shortest > longest:
@@ -84,11 +82,7 @@ def checked_limits(edge_length: float, min_edge_length: float | None, gradation:
             f"The min_edge_length {shortest:g} is longer than the target edge length {longest:g}. Give a shorter one."
         )
         raise ContourError("edge-length", message)
-    if not 1 < gradation < np.inf:
-        raise ValueError(f"gradation is the ratio of edge lengths beside each other, more than 1, not {gradation!r}")
-    if not 0 < corner_angle < 180:
-        raise ValueError(f"corner_angle is between 0 and 180 degrees, not {corner_angle!r}")
-    return Limits(longest, shortest, float(np.log(gradation)), float(np.radians(corner_angle)))
+    return Limits(longest, shortest, float(np.log(gradation)), corner_angle)
 
 
 def checked_edge_length(edge_length: float, name: str = "target edge length") -> float:

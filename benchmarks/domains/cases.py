@@ -14,7 +14,7 @@ import tessera
 from tessera.budget import MOST_TRIANGLES
 from tessera.contour import clean_domains
 from tessera.gradation import prepare
-from tessera.settings import Settings
+from tessera.settings import Request, Settings
 
 from . import outlines
 
@@ -128,10 +128,11 @@ def islands() -> list[Case]:
 
 def target_of(case: Case) -> float | Callable[[np.ndarray], np.ndarray]:
     """The sizing function that the case's mesh follows, limited and graded: a length, or (n, 2) -> (n,)."""
-    sizing, limits = Settings(**case.options).checked(case.edge_length)
+    own = (case.options.get(name) for name in ("sizing", "min_edge_length"))
+    sizing, limits = Request(case.loops, case.edge_length, *own).checked(Settings())
     if sizing is None:
         return case.edge_length
-    target, errors = prepare({0: clean_domains([case.loops])[0]}, sizing, limits, MOST_TRIANGLES)
+    target, errors = prepare({0: clean_domains([case.loops])[0]}, [(sizing, limits)], MOST_TRIANGLES)
     if errors:
         raise errors[0]
     return lambda points: target(points, np.zeros(len(points), dtype=np.int64))

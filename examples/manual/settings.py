@@ -10,7 +10,9 @@ import matplotlib
 import numpy as np
 
 import tessera
-from tessera.counting import mesh_to_count
+from tessera.counting import mesh_to_counts
+from tessera.domains import domains_in_steps
+from tessera.settings import Request, Settings
 from tessera.steps import finish
 
 from ..pictures import draw_mesh
@@ -66,8 +68,13 @@ def edge_length() -> list[Panel]:
 def triangle_count() -> list[Panel]:
     """Size by Triangle Count."""
     panels = []
-    for count in (100, 400, 1600):
-        mesh = finish(mesh_to_count(PLATE, count, lambda h: tessera.mesh_in_steps(PLATE, h)))
+    counts = (100, 400, 1600)
+
+    def mesh_at(_: list[int], lengths: list[float]):
+        return domains_in_steps([Request(PLATE, h) for h in lengths], Settings())
+
+    steps = mesh_to_counts([PLATE] * len(counts), counts, mesh_at)
+    for count, mesh in zip(counts, finish(steps), strict=True):
         panels.append(Panel(f"Triangles {count}: {mesh.report.n_triangles}", mesh))
     return panels
 

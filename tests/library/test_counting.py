@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import tessera
-from tessera.counting import TOLERANCE, expected_edge_length, mesh_to_count
+from tessera.counting import TOLERANCE, expected_edge_length, mesh_to_counts
+from tessera.steps import finish
 
 SQUARE = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], dtype=float)
 
@@ -33,15 +34,14 @@ def made(loops, n_triangles, **settings):
     """The mesh, and the lengths that were tried."""
     lengths = []
 
-    def mesh_at(length):
-        lengths.append(length)
-        return tessera.mesh(loops, length, **settings)
+    def mesh_at(numbers, tried):
+        assert numbers == [0]
+        lengths.extend(tried)
+        return [tessera.mesh(loops, *tried, **settings)]
         yield
 
-    steps = mesh_to_count(loops, n_triangles, mesh_at)
-    with pytest.raises(StopIteration) as end:
-        next(steps)
-    return end.value.value, lengths
+    (mesh,) = finish(mesh_to_counts([loops], [n_triangles], mesh_at))
+    return mesh, lengths
 
 
 @pytest.mark.parametrize("name", DOMAINS)
@@ -72,7 +72,25 @@ def test_the_expected_length_goes_with_the_size():
 
 
 def test_a_domain_that_cannot_be_meshed_is_refused():
-    with pytest.raises(tessera.ContourError, match="itself"):
-        made([[(0, 0), (1, 1), (1, 0), (0, 1)]], 100)
-    with pytest.raises(tessera.ContourError, match="no contour"):
-        made([], 100)
+    crossed, _ = made([[(0, 0), (1, 1), (1, 0), (0, 1)]], 100)
+    assert crossed.reason == "self-intersection"
+    nothing, _ = made([], 100)
+    assert nothing.reason == "too-few-points"
+
+
+def test_each_of_several_domains_is_meshed_as_it_would_be_alone():
+    names, counts = ["ring", "strip", "star", "plate"], [300, 20, 500, 150]
+    domains = [DOMAINS[name] for name in names] + [[[(0, 0), (1, 1), (1, 0), (0, 1)]]]
+    asked = []
+
+    def mesh_at(numbers, lengths):
+        asked.append(numbers)
+        return tessera.mesh_many([domains[number] for number in numbers], lengths)
+        yield
+
+    *meshes, error = finish(mesh_to_counts(domains, [*counts, 100], mesh_at))
+    assert isinstance(error, tessera.ContourError) and asked[0] == [0, 1, 2, 3]
+    for name, count, mesh in zip(names, counts, meshes, strict=True):
+        alone, _ = made(DOMAINS[name], count)
+        assert np.array_equal(alone.vertices, mesh.vertices) and np.array_equal(alone.triangles, mesh.triangles)
+        assert alone.report.warnings == mesh.report.warnings

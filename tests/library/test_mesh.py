@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 import tessera
 from tessera.budget import checked_domain
 from tessera.contour import nesting
-from tessera.meshing import mesh_domains
-from tessera.settings import Settings
+from tessera.domains import mesh_domains
+from tessera.settings import Request, Settings
 from tests.library.polygons import LETTER_E, circle, letter_s, placed, placements, simple_polygons, star
 from tests.validity import check_mesh, polygon_area
 
@@ -98,6 +98,38 @@ def test_a_batch_is_each_domain_alone():
             np.testing.assert_array_equal(alone.vertices, mesh.vertices)
 
 
+@settings(deadline=None, max_examples=12)
+@given(st.data())
+def test_domains_of_any_size_and_place_and_sizing_are_meshed_as_they_would_be_alone(data):
+    shapes = [[circle(60)], [star(7)], [LETTER_E / 3], [circle(60) * 3, circle(24)], [SQUARE, SQUARE + [1, 0]]]
+    sizings = [None, 0.3, tessera.by_distance(0.1), lambda points: np.full(len(points), 0.2)]
+    requests = []
+    for _ in range(data.draw(st.integers(2, 5))):
+        loops, sizing = data.draw(st.sampled_from(shapes)), data.draw(st.sampled_from(sizings))
+        # A sizing is in the loops' unit.
+        scale = 1.0 if sizing is not None else 10.0 ** data.draw(st.integers(-6, 6))
+        place = scale * np.array([data.draw(st.integers(-1000, 1000)), 0])
+        length = scale * data.draw(st.sampled_from([-1.0, 0.2, 0.35, 1.0]))
+        requests.append(Request([scale * loop + place for loop in loops], length, sizing))
+    kept = Settings(boundary=data.draw(st.sampled_from(["resample", "keep"])), smooth=data.draw(st.integers(0, 1)))
+    for request, together in zip(requests, mesh_domains(requests, kept), strict=True):
+        (alone,) = mesh_domains([request], kept)
+        if request.edge_length < 0:
+            assert alone.reason == together.reason == "edge-length"
+            continue
+        np.testing.assert_array_equal(alone.vertices, together.vertices)
+        np.testing.assert_array_equal(alone.triangles, together.triangles)
+        assert alone.report.warnings == together.report.warnings
+
+
+def test_a_batch_takes_an_edge_length_for_each_domain():
+    first, second = tessera.mesh_many([[SQUARE], [SQUARE]], [0.5, 0.1])
+    np.testing.assert_array_equal(second.vertices, tessera.mesh([SQUARE], 0.1).vertices)
+    assert len(first.triangles) < len(second.triangles)
+    with pytest.raises(ValueError, match="2 domains and 1 edge lengths"):
+        tessera.mesh_many([[SQUARE], [SQUARE]], [0.5])
+
+
 def test_domains_may_be_any_iterables():
     loops = [SQUARE * 4, SQUARE + 1]
     (one,) = tessera.mesh_many(((loop for loop in loops) for _ in range(1)), 0.8)
@@ -106,8 +138,8 @@ def test_domains_may_be_any_iterables():
 
 def test_kept_long_edges_coarsen_no_other_mesh():
     plate, disk = [SQUARE * 4], [circle(24) * 0.5 + 0.6]
-    (alone,) = mesh_domains([disk], 0.1, Settings(boundary="keep"))
-    together = mesh_domains([plate, disk], 0.1, Settings(boundary="keep"))
+    (alone,) = mesh_domains([Request(disk, 0.1)], Settings(boundary="keep"))
+    together = mesh_domains([Request(plate, 0.1), Request(disk, 0.1)], Settings(boundary="keep"))
     np.testing.assert_array_equal(together[1].vertices, alone.vertices)
     np.testing.assert_array_equal(together[1].triangles, alone.triangles)
 

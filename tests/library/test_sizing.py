@@ -26,8 +26,8 @@ def jump(points: np.ndarray) -> np.ndarray:
 
 def target_of(loop, sizing, edge_length=0.2, min_edge_length=None, gradation=1.3, most=5_000_000):
     """The graded sizing of a domain as a function of points alone."""
-    limits = checked_limits(edge_length, min_edge_length, gradation, corner_angle=32.0)
-    target, errors = prepare({0: [clean_loop(loop)]}, sizing, limits, most)
+    limits = checked_limits(edge_length, min_edge_length, gradation, np.radians(32.0))
+    target, errors = prepare({0: [clean_loop(loop)]}, [(sizing, limits)], most)
     if errors:
         raise errors[0]
     return lambda points: target(points, np.zeros(len(points), dtype=np.int64))

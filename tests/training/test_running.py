@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
-from tessera import ContourError, levels, meshing, refinement, relaxation, remeshing, triangulation
+from tessera import ContourError, levels, refinement, relaxation, remeshing, triangulation
 from tessera.cavity import areas, is_inside
 from tessera.closing import MOST_EDGES
 from tessera.contour import clean_domains
 from tessera.crossings import crossing_pairs
-from tessera.settings import Settings
+from tessera.domains import mesh_domains
+from tessera.settings import Request, Settings
 from tessera.transform import superimpose
 from training import domains, recording, running
 from training.recording import KINDS
@@ -127,10 +128,10 @@ def test_recorded_cells_cover_the_domain_and_nothing_else():
 
 def test_recording_changes_no_mesh():
     domain = domains.random_domains(np.random.default_rng(SEED), 6)
-    loops = [[d.loop] for d in domain]
-    plain = meshing.mesh_domains(loops, 1.0, Settings(boundary="keep"))
+    requests = [Request([d.loop], 1.0) for d in domain]
+    plain = mesh_domains(requests, Settings(boundary="keep"))
     with recording.recording():
-        recorded = meshing.mesh_domains(loops, 1.0, Settings(boundary="keep"))
+        recorded = mesh_domains(requests, Settings(boundary="keep"))
     for a, b in zip(plain, recorded, strict=True):
         assert isinstance(a, ContourError) or (
             np.array_equal(a.vertices, b.vertices) and np.array_equal(a.triangles, b.triangles)
