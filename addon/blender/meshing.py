@@ -5,14 +5,16 @@ Importing this loads the mesher and onnxruntime; it is imported when there is so
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import bpy
 import numpy as np
 
 from .. import tessera
 from ..tessera import networks
-from ..tessera.counting import expected_edge_length, mesh_to_count
+from ..tessera.counting import expected_edge_length
 from ..tessera.steps import Steps, finish, within
 from .errors import OutlineError
 from .failures import Failure, with_world_places
@@ -20,11 +22,16 @@ from .outline import Outline
 from .preferences import execution
 from .progress import named
 from .reading import read_outlines
-from .settings import EDGES_ALONG, NEAR_SHARE, Settings
-from .targets import Targets, read_targets, sizing_of, unnamed
+from .settings import EDGES_ALONG, Settings
+from .targets import Targets, read_targets, unnamed
+from .wanted import Wanted, mesh_wanted
 from .writing import Piece
 
-__all__ = ["Failure", "Meshed", "Task", "finish", "mesh_all", "mesh_object", "read_task"]
+__all__ = ["Failure", "Meshed", "Task", "finish", "handfuls", "mesh_all", "mesh_task", "mesh_tasks", "read_task"]
+
+T = TypeVar("T")
+# Triangles that are meshed together: about a second's work, in which there is little left to gain by more of them.
+_TOGETHER = 4000
 
 
 @dataclass(frozen=True)
@@ -85,30 +92,77 @@ def _check_editable(obj: bpy.types.Object) -> None:
         raise OutlineError("library", message)
 
 
-def mesh_task(task: Task) -> Steps[Meshed]:
-    """Mesh what was read, the outlines one after the other. Raises Failure."""
+def mesh_tasks(tasks: Sequence[Task]) -> Steps[list[Meshed | Failure]]:
+    """Mesh what was read of several objects, all together; one that fails stops no other."""
     networks.use(networks.Execution(*execution()))
+    asked = [_asked(task) for task in tasks]
+    whole = [one for one in asked if not isinstance(one, Failure)]
+    made = iter((yield from mesh_wanted([wanted for one in whole for wanted in one])))
+    return [
+        one if isinstance(one, Failure) else _outcome(task, one, [next(made) for _ in one])
+        for task, one in zip(tasks, asked, strict=True)
+    ]
+
+
+def mesh_task(task: Task) -> Steps[Meshed]:
+    """`mesh_tasks` for one. Raises Failure."""
+    (outcome,) = yield from mesh_tasks([task])
+    if isinstance(outcome, Failure):
+        raise outcome
+    return outcome
+
+
+def _asked(task: Task) -> list[Wanted] | Failure:
+    """What each outline of a task wants."""
     edge_length = automatic_edge_length(task.outlines, task.settings)
-    counts = _shared_count(task)
-    pieces, reports, warnings = [], [], unnamed(task.settings)
-    for number, (outline, targets) in enumerate(zip(task.outlines, task.targets, strict=True)):
-        first, last = number / len(task.outlines), (number + 1) / len(task.outlines)
-        outline = _with_vertices(outline, task.settings, edge_length, counts[number])
+    try:
+        counts = _shared_count(task)
+    except Failure as failure:
+        return failure
+    asked = []
+    for outline, targets, count in zip(task.outlines, task.targets, counts, strict=True):
         try:
-            steps = _mesh_outline(outline, targets, task.settings, edge_length, counts[number])
-            made = yield from within(steps, first, last)
-            _check_rounding(outline, made)
+            outline = _with_vertices(outline, task.settings, edge_length, count)
         except tessera.ContourError as error:
-            raise Failure(task.obj, error, outline) from error
-        pieces.append(Piece(outline, made.vertices, made.triangles, made.region))
-        reports.append(made.report)
-        warnings += [with_world_places(warning, task.obj, outline) for warning in made.report.warnings]
-    return Meshed(task, edge_length, tuple(pieces), tuple(reports), tuple(dict.fromkeys(warnings)))
+            return Failure(task.obj, error, outline)
+        asked.append(Wanted(outline, targets, task.settings, edge_length, count))
+    return asked
 
 
-def mesh_object(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, settings: Settings) -> Steps[Meshed]:
-    """Read and mesh one object. Raises Failure."""
-    return (yield from mesh_task(read_task(obj, depsgraph, settings)))
+def _outcome(task: Task, asked: list[Wanted], made: list[tessera.Mesh | tessera.ContourError]) -> Meshed | Failure:
+    """What a task comes to by the outcomes of its outlines."""
+    warnings = unnamed(task.settings)
+    for wanted, mesh in zip(asked, made, strict=True):
+        error = mesh if isinstance(mesh, tessera.ContourError) else _lost_in_rounding(wanted.outline, mesh)
+        if error is not None:
+            return Failure(task.obj, error, wanted.outline)
+        warnings += [with_world_places(warning, task.obj, wanted.outline) for warning in mesh.report.warnings]
+    pairs = list(zip(asked, made, strict=True))
+    pieces = tuple(Piece(one.outline, mesh.vertices, mesh.triangles, mesh.region) for one, mesh in pairs)
+    reports = tuple(mesh.report for mesh in made)
+    return Meshed(task, asked[0].edge_length, pieces, reports, tuple(dict.fromkeys(warnings)))
+
+
+def handfuls(items: Iterable[T], size: Callable[[T], float]) -> Iterator[list[T]]:
+    """Items in their order, as many together as have about `_TOGETHER` triangles by their size."""
+    some, total = [], 0.0
+    for item in items:
+        own = size(item)
+        if some and total + own > _TOGETHER:
+            yield some
+            some, total = [], 0.0
+        some.append(item)
+        total += own
+    if some:
+        yield some
+
+
+def expected_triangles(task: Task) -> float:
+    """About how many triangles a task comes to, or some more; a sizing may ask for many more."""
+    if task.settings.size_by == "TRIANGLE_COUNT":
+        return task.settings.triangle_count
+    area = sum(float(np.prod(np.ptp(np.concatenate(outline.loops), axis=0))) for outline in task.outlines)
+    return 4 / 3**0.5 * area / automatic_edge_length(task.outlines, task.settings) ** 2
 
 
 @dataclass(frozen=True)
@@ -120,19 +174,20 @@ class Batch:
 
 
 def mesh_all(objects: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph, settings: list[Settings]) -> Steps[Batch]:
-    """Read all objects, then mesh one after the other, each by its settings; one that fails stops no other."""
+    """Read all objects, then mesh a handful at a time, each by its settings; one that fails stops no other."""
     tasks, meshed, failures = [], [], []
     for obj, its in zip(objects, settings, strict=True):
         try:
             tasks.append(read_task(obj, depsgraph, its))
         except Failure as failure:
             failures.append(failure)
-    for number, task in enumerate(tasks):
-        try:
-            steps = named(mesh_task(task), task.obj.name)
-            meshed.append((yield from within(steps, number / len(tasks), (number + 1) / len(tasks))))
-        except Failure as failure:
-            failures.append(failure)
+    done = 0
+    for some in handfuls(tasks, expected_triangles):
+        name = some[0].obj.name if len(some) == 1 else f"{some[0].obj.name} and {len(some) - 1} more"
+        steps = within(named(mesh_tasks(some), name), done / len(tasks), (done + len(some)) / len(tasks))
+        for outcome in (yield from steps):
+            (failures if isinstance(outcome, Failure) else meshed).append(outcome)
+        done += len(some)
     return Batch(tuple(meshed), tuple(failures))
 
 
@@ -166,38 +221,14 @@ def _with_vertices(outline: Outline, settings: Settings, edge_length: float, cou
     return outline.subdivided(expected_edge_length(outline.loops, count) if by_count else edge_length)
 
 
-def _mesh_outline(
-    outline: Outline, targets: Targets, settings: Settings, edge_length: float, count: int
-) -> Steps[tessera.Mesh]:
-    """Mesh one outline, at the edge length or with so many triangles."""
-    keep = settings.boundary == "KEEP" or outline.part is not None
-
-    def mesh_at(length: float) -> Steps[tessera.Mesh]:
-        return tessera.mesh_in_steps(
-            outline.loops,
-            length,
-            sizing=sizing_of(settings, targets, length, NEAR_SHARE * length),
-            min_edge_length=min(settings.min_edge_length, length) or None,
-            gradation=settings.gradation,
-            boundary="keep" if keep else "resample",
-            corner_angle=settings.corner_angle,
-            passes=settings.passes,
-            flips=settings.flips,
-            smooth=settings.smooth,
-        )
-
-    if settings.size_by == "TRIANGLE_COUNT":
-        return mesh_to_count(outline.loops, count, mesh_at)
-    return mesh_at(edge_length)
-
-
-def _check_rounding(outline: Outline, made: tessera.Mesh) -> None:
-    """Raise ContourError if elements that are no slivers lose their area in Blender's single precision."""
+def _lost_in_rounding(outline: Outline, made: tessera.Mesh) -> tessera.ContourError | None:
+    """The error of elements that are no slivers and lose their area in Blender's single precision."""
     vertices = outline.plane.lift(made.vertices).astype(np.float32).astype(np.float64)
     fat = tessera.element_quality(made.vertices, made.triangles) > 0.01
-    if (tessera.element_quality(outline.plane.flatten(vertices), made.triangles[fat]) <= 0).any():
-        message = (
-            "Triangles so small are lost in the single precision of Blender's meshes, so far from the object's origin. "
-            "Use a larger edge length, or Object > Set Origin > Origin to Geometry."
-        )
-        raise tessera.ContourError("edge-length", message)
+    if (tessera.element_quality(outline.plane.flatten(vertices), made.triangles[fat]) > 0).all():
+        return None
+    message = (
+        "Triangles so small are lost in the single precision of Blender's meshes, so far from the object's origin. "
+        "Use a larger edge length, or Object > Set Origin > Origin to Geometry."
+    )
+    return tessera.ContourError("edge-length", message)

@@ -129,13 +129,15 @@ def test_files_that_are_done_are_not_opened_again(tmp_path):
     assert run(tmp_path, *words)[0] == 0 and (out / "a.stl").exists()
 
 
-def test_a_run_that_is_killed_loses_the_curve_in_hand_alone(tmp_path):
-    for i in range(12):
-        poly_curve(star(6 + i), name=f"A{i:02}")
+@pytest.mark.parametrize(("count", "edge_length", "together"), [(10, 0.06, 1), (150, 0.3, 45)])
+def test_a_run_that_is_killed_loses_what_is_in_hand_alone(tmp_path, count, edge_length, together):
+    """Curves of thousands of triangles one by one, small ones by the handful."""
+    for i in range(count):
+        poly_curve(star(6 + i % 10), name=f"A{i:03}")
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
     script = ROOT / "tests" / "blender" / "run_command.py"
     words = [sys.executable, script, tmp_path / "scene.blend", "mesh", "--output", tmp_path / "out.blend"]
-    words += ["--edge-length", "0.2"]
+    words += ["--edge-length", str(edge_length)]
     environment = os.environ | {"PYTHONPATH": str(ROOT)}
     with open(tmp_path / "said", "w") as said:
         process = subprocess.Popen(words, env=environment, stdout=said, stderr=subprocess.STDOUT)
@@ -148,12 +150,12 @@ def test_a_run_that_is_killed_loses_the_curve_in_hand_alone(tmp_path):
     assert not (tmp_path / "out.blend").exists()
     done = sum(path.read_text().count("\n") for path in folder.glob("*.jsonl"))
     shown = (tmp_path / "said").read_text().count(" triangles, ")
-    assert 3 <= done < 12 and done - shown in (0, 1)
+    assert 3 <= done < count and done - shown <= together
     report = tmp_path / "report.json"
     again = subprocess.run([*words, "--resume", "--report", report], env=environment, capture_output=True, text=True)
     assert again.returncode == 0, again.stderr
     records = json.loads(report.read_text())["curves"]
-    assert [record["earlier"] for record in records] == [True] * done + [False] * (12 - done)
+    assert [record["earlier"] for record in records] == [True] * done + [False] * (count - done)
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "out.blend"))
     counts = {record["object"]: record["n_triangles"] for record in records}
     assert counts == {name: len(bpy.data.objects[f"{name} Mesh"].data.polygons) for name in counts}

@@ -35,7 +35,7 @@ class UsageError(Exception):
 class Request:
     """jobs: what to open and what to write; objects: names, or None for all; workers: how many processes there are.
 
-    helps: the folder of the run that this process is a worker of, or None.
+    helps: the folder of the run that this process is a worker of, or None; alone: whether to mesh each by itself.
     """
 
     jobs: tuple[Job, ...]
@@ -46,6 +46,7 @@ class Request:
     resume: bool
     dry_run: bool
     helps: Path | None
+    alone: bool
 
 
 def parse(words: list[str]) -> Request:
@@ -69,6 +70,7 @@ def parse(words: list[str]) -> Request:
         resume=options.resume,
         dry_run=options.dry_run,
         helps=Path(options.helps) if options.helps else None,
+        alone=options.alone,
     )
 
 
@@ -103,5 +105,6 @@ def _parser() -> argparse.ArgumentParser:
     mesh.add_argument("--resume", action="store_true", help="what an earlier run has done is not done again")
     mesh.add_argument("--dry-run", action="store_true", help="say what would be meshed; mesh and write nothing")
     mesh.add_argument("--helps", help=argparse.SUPPRESS)
+    mesh.add_argument("--alone", action="store_true", help=argparse.SUPPRESS)
     add_options(mesh)
     return parser

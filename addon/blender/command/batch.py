@@ -1,9 +1,10 @@
-"""One file: its curves are read, meshed one after the other, and written."""
+"""One file: its curves are read, meshed a handful at a time, and written."""
 
 from __future__ import annotations
 
 import json
 import os
+from collections.abc import Iterable, Iterator
 from dataclasses import asdict, replace
 
 import bpy
@@ -12,7 +13,7 @@ from .. import meshing
 from . import console
 from .arguments import Request
 from .claims import Claims
-from .curves import mesh_curve, read_curve, write
+from .curves import Curve, known, mesh_curves, read_curve, write
 from .files import Job
 from .inputs import InputError, choose, open_file
 from .journal import Journal, drop_arrays, read_done, write_done
@@ -63,10 +64,21 @@ def fill_journal(job: Job, request: Request, claims: Claims, number: int) -> Non
         return  # said by the process that writes the file
     journal = Journal(job.target, claims.run)
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    for index, obj in enumerate(objects):
-        if claims.claim(number, index):
-            mesh_curve(job, obj, depsgraph, request, journal)
+    own = (
+        known(job, read_curve(job, obj, depsgraph, request), journal)
+        for index, obj in enumerate(objects)
+        if claims.claim(number, index)
+    )
+    for some in _handfuls(own, request):
+        mesh_curves(job, some, journal)
     journal.close()
+
+
+def _handfuls(curves: Iterable[Curve], request: Request) -> Iterator[list[Curve]]:
+    """Those that are meshed together; where a process has ended over one of them, each by itself."""
+    if request.alone:
+        return ([curve] for curve in curves)
+    return meshing.handfuls(curves, lambda curve: curve.expected_triangles)
 
 
 def plan_file(job: Job, request: Request) -> list[Record]:
@@ -95,11 +107,15 @@ def _mesh_opened(job: Job, request: Request, claims: Claims, number: int, journa
     depsgraph = bpy.context.evaluated_depsgraph_get()
     progress = console.Progress("curves", len(objects))
     curves = []
-    for index, obj in enumerate(objects):
-        lost = claims.is_claimed(number, index)
-        curves.append(mesh_curve(job, obj, depsgraph, request, journal, lost))
-        console.show(curves[-1].record)
-        progress.reached(index + 1, job.source.name if job.source else "")
+    read = (
+        known(job, read_curve(job, obj, depsgraph, request), journal, claims.is_claimed(number, index))
+        for index, obj in enumerate(objects)
+    )
+    for some in _handfuls(read, request):
+        for curve in mesh_curves(job, some, journal):
+            console.show(curve.record)
+            curves.append(curve)
+        progress.reached(len(curves), job.source.name if job.source else "")
     records = [curve.record for curve in curves]
     meshed = [curve for curve in curves if curve.record.status == "meshed"]
     if not meshed:

@@ -26,6 +26,10 @@ class Claims:
     run: str
     folder: Path | None = None
 
+    def once_more(self) -> Claims:
+        """Claims of the same run in which nothing is claimed yet."""
+        return Claims(self.run, self.folder.with_name(f"{self.folder.name}-again"))
+
     def claim(self, job: int, curve: int | None = None) -> bool:
         """Whether this process is the first to take a job, or a curve of it. Raises RunIsOver."""
         if not self._led():

@@ -25,50 +25,55 @@ _NOT_OUTLINES = frozenset({"open", "not-planar"})
 
 @dataclass(frozen=True)
 class Curve:
-    """What is known of an object: what was read, or the record of what could not be; once meshed, all three."""
+    """What is known of an object: what was read, or the record of what could not be; once meshed, all three.
+
+    seconds: of reading.
+    """
 
     task: meshing.Task | None = None
     record: Record | None = None
     entry: Entry | None = None
+    seconds: float = 0.0
+
+    @property
+    def expected_triangles(self) -> float:
+        """About how many triangles are still to be made."""
+        return meshing.expected_triangles(self.task) if self.record is None else 0.0
 
 
 def read_curve(job: Job, obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, request: Request) -> Curve:
     """Read one object: a task, or the record of its failure."""
-    name = obj.name
+    name, start = obj.name, time.perf_counter()
     try:
-        return Curve(meshing.read_task(obj, depsgraph, request.settings))
+        task = meshing.read_task(obj, depsgraph, request.settings)
     except meshing.Failure as failure:
         return Curve(record=_failure(job, name, failure, request.objects is not None))
     except Exception as error:
         return Curve(record=_internal(job, name, error))
+    return Curve(task, seconds=time.perf_counter() - start)
 
 
-def mesh_curve(
-    job: Job,
-    obj: bpy.types.Object,
-    depsgraph: bpy.types.Depsgraph,
-    request: Request,
-    journal: Journal,
-    lost: bool = False,
-) -> Curve:
-    """Read one object and mesh it, unless the journal has it.
+def known(job: Job, curve: Curve, journal: Journal, lost: bool = False) -> Curve:
+    """The same with its record, if the journal has it.
 
     lost: whether another process has had it in hand; if the journal does not have it, that process ended over it.
     """
-    start = time.perf_counter()
-    curve = read_curve(job, obj, depsgraph, request)
-    if curve.task is None:
+    if curve.record is not None:
         return curve
-    key = _key(curve.task)
-    entry = journal.entries.get(key)
+    entry = journal.entries.get(_key(curve.task))
     if entry is not None:
-        record = Record(**entry.record)
-        return Curve(curve.task, replace(record, earlier=entry.earlier), entry)
+        return Curve(curve.task, replace(Record(**entry.record), earlier=entry.earlier), entry)
     if lost:
         message = "the process that had it in hand ended before it was meshed: try it by itself, with --objects"
-        return Curve(record=failed(job.name, obj.name, "process", message))
-    record, arrays = _mesh(job, curve.task, start)
-    return Curve(curve.task, record, journal.add(key, asdict(record), arrays))
+        return Curve(record=failed(job.name, curve.task.obj.name, "process", message))
+    return curve
+
+
+def mesh_curves(job: Job, curves: list[Curve], journal: Journal) -> list[Curve]:
+    """Mesh those that have no record yet, together, into the journal."""
+    fresh = [curve for curve in curves if curve.record is None]
+    meshed = iter(_mesh(job, fresh, journal) if fresh else ())
+    return [next(meshed) if curve.record is None else curve for curve in curves]
 
 
 def write(curves: list[Curve]) -> list[bpy.types.Object]:
@@ -87,18 +92,31 @@ def _restored(curve: Curve) -> meshing.Meshed:
     return meshing.Meshed(curve.task, curve.record.edge_length, pieces, reports, curve.record.warnings)
 
 
-def _mesh(job: Job, task: meshing.Task, start: float) -> tuple[Record, list[np.ndarray]]:
-    """The record of an object, and three arrays for each of its outlines: vertices, triangles and their regions."""
-    name = task.obj.name
+def _mesh(job: Job, curves: list[Curve], journal: Journal) -> list[Curve]:
+    """Mesh curves together, and add each to the journal: its record, and three arrays for each of its outlines."""
+    start = time.perf_counter()
     try:
-        meshed = meshing.finish(meshing.mesh_task(task))
-    except meshing.Failure as failure:
-        return _failure(job, name, failure, named=True), []
+        outcomes = meshing.finish(meshing.mesh_tasks([curve.task for curve in curves]))
     except tessera.RuntimeProblem:
         raise  # nothing can be meshed
     except Exception as error:
-        return _internal(job, name, error), []
-    return _success(job, name, meshed, time.perf_counter() - start), _arrays(meshed)
+        if len(curves) > 1:  # which of them it is
+            return [one for curve in curves for one in _mesh(job, [curve], journal)]
+        outcomes = [error]
+    seconds = time.perf_counter() - start
+    total = sum(outcome.n_triangles for outcome in outcomes if isinstance(outcome, meshing.Meshed))
+    meshed = []
+    for curve, outcome in zip(curves, outcomes, strict=True):
+        name, arrays = curve.task.obj.name, []
+        if isinstance(outcome, meshing.Meshed):
+            share = seconds * outcome.n_triangles / total
+            record, arrays = _success(job, name, outcome, curve.seconds + share), _arrays(outcome)
+        elif isinstance(outcome, meshing.Failure):
+            record = _failure(job, name, outcome, named=True)
+        else:
+            record = _internal(job, name, outcome)
+        meshed.append(Curve(curve.task, record, journal.add(_key(curve.task), asdict(record), arrays)))
+    return meshed
 
 
 def _arrays(meshed: meshing.Meshed) -> list[np.ndarray]:

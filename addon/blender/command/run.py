@@ -72,14 +72,16 @@ def _lead(request: Request, words: list[str]) -> int:
     """Mesh everything, in this process or with others, and say what became of it."""
     start = time.monotonic()
     claims = _prepare(request)
-    if claims.folder is not None:
+    folder = claims.folder
+    if folder is not None:
         from . import workers
 
-        workers.run_workers(request, words, claims)
+        claims = workers.run_workers(request, words, claims)
     records = list(_records(request, claims))
     seconds = time.monotonic() - start
-    if claims.folder is not None:
-        shutil.rmtree(claims.folder)
+    if folder is not None:
+        for each in {folder, claims.folder}:
+            shutil.rmtree(each)
     if exit_status(records) == 0 and not request.resume:
         for job in request.jobs:
             forget(job.target)

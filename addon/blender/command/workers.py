@@ -25,6 +25,8 @@ _PAUSE = 0.2
 def work(request: Request) -> None:
     """Be one of the processes that help, until there is nothing left to claim."""
     claims = Claims(request.helps.name, request.helps)
+    if request.alone:
+        claims = claims.once_more()
     for number, job in enumerate(request.jobs):
         if not _by_files(request):
             fill_journal(job, request, claims, number)
@@ -32,11 +34,24 @@ def work(request: Request) -> None:
             mesh_file(job, request, claims, number)
 
 
-def run_workers(request: Request, words: list[str], claims: Claims) -> None:
-    """Start the processes and wait until they have ended; one that ends badly is started anew a few times."""
+def run_workers(request: Request, words: list[str], claims: Claims) -> Claims:
+    """Start the processes and wait until they have ended; one that ends badly is started anew a few times.
+
+    Where one has ended over a handful of curves, what is missing is done once more, each curve by itself: the claims
+    that are returned tell what was in hand in the end.
+    """
+    command = [*_blender(), *words, "--helps", str(claims.folder)]
+    if _run(request, command, claims) and not _by_files(request):
+        claims = claims.once_more()
+        claims.folder.mkdir()
+        _run(request, [*command, "--alone"], claims)
+    return claims
+
+
+def _run(request: Request, command: list[str], claims: Claims) -> bool:
+    """Run the processes; whether one has ended badly."""
     claims.lead()
     count = min(request.workers, len(request.jobs)) if _by_files(request) else request.workers
-    command = [*_blender(), *words, "--helps", str(claims.folder)]
     what = "files" if _by_files(request) else "curves"
     progress = console.Progress(what, len(request.jobs) if _by_files(request) else None)
     processes, restarts = [_start(command, claims, number) for number in range(count)], _RESTARTS
@@ -50,6 +65,7 @@ def run_workers(request: Request, words: list[str], claims: Claims) -> None:
                 restarts -= 1
                 console.say(f"a process ended with status {process.returncode}; another takes its place")
                 processes.append(_start(command, claims, count + _RESTARTS - restarts))
+    return restarts < _RESTARTS
 
 
 def can_start() -> bool:
@@ -62,7 +78,7 @@ def _by_files(request: Request) -> bool:
 
 
 def _start(command: list[str], claims: Claims, number: int) -> subprocess.Popen:
-    log = claims.folder.parent / f"{claims.run}-{number}.log"
+    log = claims.folder.with_name(f"{claims.folder.name}-{number}.log")
     with open(log, "wb") as file:
         return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=file, stderr=subprocess.STDOUT)
 
