@@ -191,25 +191,30 @@ def test_two_processes_on_one_file_are_killed_and_taken_up_again(blender, tmp_pa
     assert (tmp_path / "out.obj").read_text().replace("out.mtl", "alone.mtl") == alone.read_text()
 
 
-def test_a_process_that_ends_is_replaced_and_its_curve_is_said_to_have_failed(blender, tmp_path):
+@pytest.mark.parametrize("times", [1, 2])
+def test_what_a_process_had_in_hand_when_it_ended_is_done_once_more_each_by_itself(blender, tmp_path, times):
     scene, report = tmp_path / "scene.blend", tmp_path / "report.json"
-    blender("-b", "--factory-startup", "--python", HERE / "make_scene.py", "--", scene, 12)
+    blender("-b", "--factory-startup", "--python", HERE / "make_scene.py", "--", scene, 30)
     journal = tmp_path / ".tessera" / "out.stl"
     words = ("mesh", "--edge-length", 0.1, "--output", tmp_path / "out.stl", "--jobs", 2, "--report", report)
     ended = []
 
-    def end_one():
-        """Kill the process that has done most, whose number is in its journal's name; once."""
-        journals = [path for path in journal.glob("*.jsonl") if path.stat().st_size]
-        if journals and not ended:
-            ended.append(max(journals, key=lambda path: path.stat().st_size))
-            os.kill(int(ended[0].stem.rpartition("-")[2]), signal.SIGKILL)
+    def end_some():
+        """Kill a process that has claimed something: of the first ones, then of those that do it once more."""
+        wanted = (b"--helps", b"--alone")[len(ended)] if len(ended) < times else None
+        claimed = list(journal.glob("run-*-again/*-*" if ended else "run-*/*-*"))
+        for path in Path("/proc").glob("[0-9]*/cmdline") if wanted and claimed else ():
+            if wanted in (line := path.read_bytes()) and os.fsencode(tmp_path) in line:
+                os.kill(int(path.parent.name), signal.SIGKILL)
+                ended.append(line)
+                return
 
-    ran = blender("-b", scene, "--command", "tessera", *words, until=end_one)
-    assert ended, ran.stdout + ran.stderr
-    assert "another takes its place" in ran.stderr
+    ran = blender("-b", scene, "--command", "tessera", *words, until=end_some)
+    assert len(ended) == times, ran.stdout + ran.stderr
+    assert ran.stderr.count("another takes its place") == times
     records = json.loads(report.read_text())["curves"]
     failed = [record["reason"] for record in records if record["status"] == "failed"]
-    assert failed in (["process"], []), failed  # none, if it was between two curves
-    assert ran.returncode == len(failed) and (tmp_path / "out.stl").exists()
-    assert sum(record["status"] == "meshed" for record in records) == 12 - len(failed)
+    assert failed in (["process"] * (times - 1), []), failed  # none, if it was between two curves
+    assert ran.returncode == bool(failed) and (tmp_path / "out.stl").exists()
+    assert sum(record["status"] == "meshed" for record in records) == 30 - len(failed)
+    assert not list(journal.glob("run-*/"))

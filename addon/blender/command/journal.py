@@ -2,7 +2,7 @@
 
 Beside each file that is written there is the folder `.tessera/NAME/` while it is in work. Every process appends to
 files of its own there: the arrays of a curve to `RUN-PID.bin`, then its line to `RUN-PID.jsonl`. A curve counts once
-its line is whole, so that a kill loses the curve in hand alone. `done.json` is written when the file itself is. What
+its line is whole, so that a kill loses what is in hand alone. `done.json` is written when the file itself is. What
 another version of the add-on has done does not count, so that no run mixes the meshes of two.
 """
 

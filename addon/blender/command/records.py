@@ -17,9 +17,9 @@ class Record:
     """What became of one curve, or, where `object` is None, of a whole input.
 
     status: "meshed", "failed", or "passed over" (an open path or the like that was not asked for by name); edge_length:
-    the target, edge_lengths: shortest, mean and longest, both in world units; seconds: reading and meshing; place: in
-    the world; spline: from 1; outlines: the mesher's report of each, with the seconds of each stage; earlier: whether
-    an earlier run has meshed it.
+    the target, edge_lengths: shortest, mean and longest, both in world units; seconds: reading and meshing, of curves
+    that are meshed together by their triangles; place: in the world; spline: from 1; outlines: the mesher's report of
+    each, with the seconds of each stage; earlier: whether an earlier run has meshed it.
     """
 
     input: str
