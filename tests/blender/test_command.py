@@ -82,6 +82,35 @@ def test_a_curve_that_fails_does_not_keep_the_others_from_being_meshed(tmp_path,
     assert "crosses" in second["error"] and second["spline"] == 1 and second["output"] is None
 
 
+def test_an_error_of_tessera_itself_is_of_the_curve_that_has_it_though_many_are_meshed_together(
+    tmp_path, capsys, monkeypatch
+):
+    from addon.blender import meshing
+
+    meshed = meshing.mesh_tasks
+
+    def mesh_tasks(tasks):
+        if any(task.obj.name == "B" for task in tasks):
+            raise KeyError("in B")
+        return meshed(tasks)
+
+    monkeypatch.setattr(meshing, "mesh_tasks", mesh_tasks)
+    for name in "ABC":
+        poly_curve(SQUARE, name=name)
+    assert run(tmp_path / "out.blend", "--report", tmp_path / "report.json") == 1
+    assert meshes() == ["A Mesh", "C Mesh"] and "KeyError: 'in B'" in capsys.readouterr().err
+    records = json.loads((tmp_path / "report.json").read_text())["curves"]
+    assert [record["reason"] for record in records] == [None, "internal", None]
+
+
+def test_seconds_of_curves_that_are_meshed_together_are_shared(tmp_path):
+    for i in range(6):
+        poly_curve(star(5 + i), name=f"A{i}")
+    assert run(tmp_path / "out.blend", "--report", tmp_path / "report.json") == 0
+    report = json.loads((tmp_path / "report.json").read_text())
+    assert 0 < sum(record["seconds"] for record in report["curves"]) <= report["seconds"]
+
+
 def test_the_report_says_what_the_mesh_is(tmp_path):
     poly_curve(star(), name="A")
     assert run(tmp_path / "out.blend", "--report", tmp_path / "report.json", edge_length=0.2) == 0

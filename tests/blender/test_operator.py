@@ -389,6 +389,39 @@ def test_a_success_forgets_the_failures_of_before():
     assert notes.last == []
 
 
+# -- several objects --
+
+
+@pytest.mark.parametrize("wanted", [{"edge_length": 0.3}, {"size_by": "TRIANGLE_COUNT", "triangle_count": 60}, {}])
+def test_objects_that_are_meshed_together_have_the_meshes_that_they_have_alone(wanted):
+    from addon.blender import meshing
+
+    objects = [poly_curve(star(5 + i), name=f"S{i}") for i in range(3)]
+    objects += [poly_curve(BOW_TIE, name="Bow tie"), text("ab"), circle()]
+    objects[1].scale = 40, -40, 40
+    bpy.context.view_layer.update()
+    depsgraph, settings = bpy.context.evaluated_depsgraph_get(), Settings(**wanted)
+    together = meshing.finish(meshing.mesh_all(objects, depsgraph, [settings] * len(objects)))
+    alone = [meshing.finish(meshing.mesh_all([obj], depsgraph, [settings])) for obj in objects]
+    assert [str(failure) for failure in together.failures] == [str(f) for batch in alone for f in batch.failures]
+    assert len(together.failures) == 1 and len(together.meshed) == 5
+    for one, other in zip(together.meshed, (meshed for batch in alone for meshed in batch.meshed), strict=True):
+        assert one.task.obj == other.task.obj and one.edge_length == other.edge_length
+        assert one.warnings == other.warnings
+        for piece, same in zip(one.pieces, other.pieces, strict=True):
+            np.testing.assert_array_equal(piece.vertices, same.vertices)
+            np.testing.assert_array_equal(piece.triangles, same.triangles)
+
+
+def test_a_handful_is_of_as_many_as_are_worth_it_and_all_come_in_their_order():
+    from addon.blender import meshing
+
+    sizes = [10, 3000, 2000, 9000, 1, 1, 1]
+    handfuls = list(meshing.handfuls(iter(sizes), float))
+    assert handfuls == [[10, 3000], [2000], [9000], [1, 1, 1]]
+    assert list(meshing.handfuls([], float)) == []
+
+
 # -- cancelling; the window's own way is tested in test_window.py --
 
 
