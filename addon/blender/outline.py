@@ -8,12 +8,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..tessera.uncrossed import uncrossed
 from .errors import OutlineError
 from .plane import Plane, fit_plane
 
 if TYPE_CHECKING:
     import bpy
 
+# What outlines face in their object's space, where nothing else is known.
+UP = np.array([0.0, 0.0, 1.0])
 NOTHING = "There is no outline in it, or none that its modifiers leave. Draw or type something first."
 
 
@@ -67,6 +70,12 @@ class Outline:
         """The index of the loop that passes closest to a place (2,), such as a ContourError's."""
         return int(np.argmin([_distance(loop, np.asarray(place)) for loop in self.loops]))
 
+    def uncrossed(self) -> Outline:
+        """Loops that cross or touch united, as fonts mean them: with the outlines of what they wind around."""
+        loops, of = uncrossed(self.loops)
+        own = (each[of] for each in (self.splines, self.materials, self.smooth))
+        return Outline(tuple(loops), self.plane, *own, self.slots, self.part)
+
     def subdivided(self, edge_length: float) -> Outline:
         """Long edges of a part's boundary divided evenly, so that none is much longer than edge_length.
 
@@ -83,7 +92,7 @@ def make_outline(
     polylines: Sequence[Polyline],
     to_world: np.ndarray,
     slots: tuple[bpy.types.Material | None, ...] = (),
-    up: Sequence[float] = (0.0, 0.0, 1.0),
+    up: Sequence[float] = UP,
 ) -> Outline:
     """Closed polylines of one plane.
 
@@ -109,6 +118,9 @@ def make_outline(
 def _closed(polyline: Polyline, tolerance: float) -> np.ndarray:
     """The points (k, 3) of a closed polyline; one whose ends meet is closed."""
     points, name = polyline.points, f"Spline {polyline.spline}" if polyline.spline else "An outline"
+    if not np.isfinite(points).all():
+        message = f"{name} has a point whose coordinate or weight is not a finite number. Correct it, or delete it."
+        raise OutlineError("not-finite", message, None, polyline.spline)
     if not polyline.closed and len(points) > 1 and np.abs(points[0] - points[-1]).max() > tolerance:
         remedy = "so that its edges lead back to where they start"
         if polyline.spline:

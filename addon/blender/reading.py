@@ -7,8 +7,9 @@ import bpy
 import numpy as np
 
 from .errors import OutlineError
+from .evaluating import evaluated_object
 from .kinds import shows_collection
-from .outline import NOTHING, Outline, Polyline, make_outline
+from .outline import NOTHING, UP, Outline, Polyline, make_outline
 from .plane import inverse
 from .reading_curve import read_curve
 from .reading_instances import has_instances, node_curves, node_meshes, placed_objects
@@ -23,21 +24,19 @@ def read_outlines(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> list
     Usually one, with holes and islands by the even-odd rule as in Blender's own fill, but of splines of all materials
     together. More than one where there are instances, or a mesh's flat parts selected in Edit Mode: each is to be
     meshed by itself, and all are to be written together. Raises OutlineError: "open", "not-planar", "too-few-points",
-    "zero-area", "not-finite".
+    "zero-area", "not-finite", "not-evaluated".
     """
     if obj.type == "MESH" and obj.mode == "EDIT":
         return read_parts(obj)
     if obj.type == "CURVE" and obj.mode == "EDIT" and obj.modifiers:
         _bring_edits(obj, depsgraph)
-    evaluated = obj.evaluated_get(depsgraph)
-    world = np.array(evaluated.matrix_world, dtype=np.float64)
-    if not np.isfinite(world).all():
-        raise OutlineError("not-finite", "Its transform has a number that is not finite. Correct it.")
+    evaluated, world = evaluated_object(obj, depsgraph)
     outlines = []
     if not shows_collection(obj):
-        polylines = _own(evaluated, depsgraph)
+        polylines, up = _own(evaluated, depsgraph)
         if polylines or not has_instances(obj):
-            outlines.append(make_outline(polylines, world[:3, :3], slots(obj)))
+            outline = make_outline(polylines, world[:3, :3], slots(obj), up)
+            outlines.append(outline.uncrossed() if obj.type == "FONT" else outline)
     if has_instances(obj):
         outlines += _instances(evaluated, depsgraph, world)
     if not outlines:
@@ -57,19 +56,19 @@ def _bring_edits(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> None:
     depsgraph.update()
 
 
-def _own(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> list[Polyline]:
-    """The polylines of one evaluated object's own geometry."""
-    if evaluated.type in {"CURVE", "FONT"}:
-        return read_curve(evaluated, depsgraph)
-    if evaluated.type == "CURVES":
-        return read_curves(evaluated.data)
-    if evaluated.type == "GREASEPENCIL":
-        return read_grease_pencil(evaluated, np.array(evaluated.matrix_world, dtype=np.float64))
-    if evaluated.type == "GPENCIL":
-        return read_old_grease_pencil(evaluated)
+def _own(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> tuple[list[Polyline], np.ndarray]:
+    """The polylines of one evaluated object's own geometry, and the direction (3,) that their upper side faces."""
     if evaluated.type == "MESH":
         return read_mesh(evaluated)
-    return []
+    if evaluated.type in {"CURVE", "FONT"}:
+        return read_curve(evaluated, depsgraph), UP
+    if evaluated.type == "CURVES":
+        return read_curves(evaluated.data), UP
+    if evaluated.type == "GREASEPENCIL":
+        return read_grease_pencil(evaluated, np.array(evaluated.matrix_world, dtype=np.float64)), UP
+    if evaluated.type == "GPENCIL":
+        return read_old_grease_pencil(evaluated), UP
+    return [], UP
 
 
 def _instances(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph, world: np.ndarray) -> list[Outline]:
@@ -77,17 +76,20 @@ def _instances(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph, worl
     to_object, outlines = inverse(world), []
     for shown, matrix in placed_objects(evaluated, depsgraph):
         try:
-            outlines += _placed(_own(shown, depsgraph), to_object @ matrix, world, slots(shown.original))
+            polylines, up = _own(shown, depsgraph)
+            made = _placed(polylines, up, to_object @ matrix, world, slots(shown.original))
+            outlines += [outline.uncrossed() for outline in made] if shown.type == "FONT" else made
         except OutlineError as error:
             raise OutlineError(error.reason, f"In '{shown.name}': {error}", error.point, error.spline) from error
     if not shows_collection(evaluated):
-        for polylines, matrix, materials in (*node_meshes(evaluated, depsgraph), *node_curves(evaluated)):
-            outlines += _placed(polylines, to_object @ matrix, world, materials)
+        for polylines, up, matrix, materials in (*node_meshes(evaluated, depsgraph), *node_curves(evaluated)):
+            outlines += _placed(polylines, up, to_object @ matrix, world, materials)
     return outlines
 
 
 def _placed(
     polylines: Sequence[Polyline],
+    up: np.ndarray,
     matrix: np.ndarray,
     world: np.ndarray,
     materials: tuple[bpy.types.Material | None, ...],
@@ -96,5 +98,4 @@ def _placed(
     if not polylines:
         return []
     moved = [replace(p, points=p.points @ matrix[:3, :3].T + matrix[:3, 3]) for p in polylines]
-    up = inverse(matrix)[2, :3]
-    return [make_outline(moved, world[:3, :3], materials, up)]
+    return [make_outline(moved, world[:3, :3], materials, up @ inverse(matrix)[:3, :3])]

@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 
 from . import splines
+from .errors import OutlineError
 from .outline import Polyline
 from .reading_mesh import borders
 
@@ -17,12 +18,23 @@ _ON_SPLINE = frozenset({"HOOK", "SOFT_BODY", "MESH_DEFORM"})
 def read_curve(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> list[Polyline]:
     """One polyline a spline, at the resolution that Blender shows; a fill, extrusion or bevel is left out.
 
+    Raises OutlineError "not-planar" where modifiers work on an extrusion or a bevel.
+
     After a modifier that works on what Blender makes of the curve, the borders of its faces are the outline.
     """
     with _control_points(evaluated, depsgraph) as curve:
         drawn = [_polyline(spline, number) for number, spline in enumerate(curve.splines, start=1)]
+    if evaluated.type == "FONT":  # some fonts leave single points in their letters, which nobody could remove
+        drawn = [polyline for polyline in drawn if len(polyline.points) > 2]
     if not _has_mesh_modifiers(evaluated):
         return drawn
+    data = evaluated.data
+    if data.extrude or data.bevel_depth or (data.bevel_mode == "OBJECT" and data.bevel_object is not None):
+        message = (
+            "Its modifiers work on what its extrusion or bevel makes, which has no outline. Set these to 0, or switch "
+            "the modifiers off."
+        )
+        raise OutlineError("not-planar", message)
     mesh = evaluated.to_mesh()
     try:
         made = [] if mesh is None else borders(mesh)

@@ -7,14 +7,14 @@ import numpy as np
 
 from .errors import OutlineError
 from .kinds import shows_collection
-from .outline import Polyline
-from .reading_mesh import borders
+from .outline import UP, Polyline
+from .reading_mesh import borders, facing
 from .reading_strokes import read_curves
 
 # What fills the persistent id of an instance behind its own numbers.
 _NO_NUMBER = 2**31 - 1
 
-Shown = tuple[list[Polyline], np.ndarray, tuple[bpy.types.Material | None, ...]]
+Shown = tuple[list[Polyline], np.ndarray, np.ndarray, tuple[bpy.types.Material | None, ...]]
 
 
 def has_instances(obj: bpy.types.Object) -> bool:
@@ -38,7 +38,8 @@ def placed_objects(
 
 
 def node_meshes(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Iterator[Shown]:
-    """The meshes that geometry nodes make and place: their outlines, world matrix (4, 4) and materials.
+    """The meshes that geometry nodes make and place: their outlines, the side that these face, world matrix (4, 4) and
+    materials.
 
     The object's own mesh is not among them; that of an object whose own data are no mesh is.
     """
@@ -49,7 +50,7 @@ def node_meshes(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> 
         placed = instance.persistent_id[1] != _NO_NUMBER
         if instance.object.type == "MESH" and (placed or not own_is_mesh):
             mesh = instance.object.data
-            yield borders(mesh), np.array(instance.matrix_world, dtype=np.float64), _materials(mesh)
+            yield borders(mesh), facing(mesh), np.array(instance.matrix_world, dtype=np.float64), _materials(mesh)
         elif instance.object.type == "CURVE" and not hasattr(evaluated, "evaluated_geometry"):
             message = "Its geometry nodes make curves, which can be read from Blender 4.5 on. Add a Fill Curve node."
             raise OutlineError("too-few-points", message)
@@ -65,7 +66,7 @@ def node_curves(evaluated: bpy.types.Object) -> Iterator[Shown]:
 def _curves_in(geometry: "bpy.types.GeometrySet", matrix: np.ndarray, is_own: bool) -> Iterator[Shown]:
     """is_own: whether the object's data are curves, so that those of the geometry itself are read as these."""
     if geometry.curves is not None and not is_own:
-        yield read_curves(geometry.curves), matrix, _materials(geometry.curves)
+        yield read_curves(geometry.curves), UP, matrix, _materials(geometry.curves)
     places = geometry.instances_pointcloud()
     if places is None:
         return

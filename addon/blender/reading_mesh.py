@@ -5,22 +5,34 @@ import numpy as np
 
 from .chains import outline_edges, polylines
 from .errors import OutlineError
-from .outline import Polyline
+from .outline import UP, Polyline
 from .plane import fit_plane
 
 _NOT_FLAT = "It is not flat. Select the flat part that is to be meshed again, in Edit Mode."
 
 
-def read_mesh(evaluated: bpy.types.Object) -> list[Polyline]:
-    """The outlines of a mesh object as its modifiers leave it. Raises OutlineError "not-planar" if it is not flat."""
+def read_mesh(evaluated: bpy.types.Object) -> tuple[list[Polyline], np.ndarray]:
+    """The outlines of a mesh object as its modifiers leave it, and the direction (3,) that its faces face.
+
+    Raises OutlineError "not-planar" if it is not flat.
+    """
     mesh = evaluated.to_mesh()
     try:
         made, has_faces = borders(mesh), len(mesh.polygons) > 0
         if has_faces:
             _check_flat(mesh, made)
-        return made
+        return made, facing(mesh)
     finally:
         evaluated.to_mesh_clear()
+
+
+def facing(mesh: bpy.types.Mesh) -> np.ndarray:
+    """(3,) the direction that the faces of a flat mesh face, most of them by area; up, where there is none."""
+    normals, areas = np.empty((len(mesh.polygons), 3), dtype=np.float32), np.empty(len(mesh.polygons), dtype=np.float32)
+    mesh.polygons.foreach_get("normal", normals.ravel())
+    mesh.polygons.foreach_get("area", areas)
+    mean = (normals.astype(np.float64) * areas[:, None]).sum(axis=0)
+    return mean if np.isfinite(mean).all() and np.linalg.norm(mean) > 1e-6 * areas.sum() else UP
 
 
 def _check_flat(mesh: bpy.types.Mesh, outlines: list[Polyline]) -> None:

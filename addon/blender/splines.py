@@ -60,7 +60,8 @@ def nurbs(
     parameters = spans[:-1, None] + np.diff(spans)[:, None] * np.arange(resolution) / resolution
     parameters = parameters.ravel() if cyclic else np.append(parameters, spans[-1])
     basis = _basis(knots, parameters, degree, len(wrapped)) * weights[wrapped % n]
-    return basis @ points[wrapped % n] / basis.sum(axis=1)[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):  # weights may add up to nothing
+        return basis @ points[wrapped % n] / basis.sum(axis=1)[:, None]
 
 
 def _knots(n: int, order: int, cyclic: bool, endpoint: bool, bezier_knots: bool) -> np.ndarray:

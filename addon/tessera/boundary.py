@@ -12,6 +12,7 @@ from .sampling import cut
 # A vertex is a corner where the contour turns by more than this; a regular polygon of 12 sides, which turns by 30
 # degrees at its vertices, is still a coarse circle.
 CORNER_ANGLE = np.radians(32.0)
+_ONE_CORNER = 0.05  # of an edge: corners that are nearer to each other are one
 _HALVED = 24  # edges from which it is worth while that a loop's boundary can be halved
 # Numbers of edges that are as close to two whole numbers are rounded down, whatever the last bit says.
 _TIE = 1e-9
@@ -39,11 +40,12 @@ def resample_loops(
     int: loops of one domain, which do not meet, do not meet afterwards either, and lie inside each other as before;
     without it each loop is a domain of its own. corner_angle: in radians.
 
-    The vertices lie on the given polyline. Corners (turning by more than the corner angle) stay; between two of them
-    are as many edges as come near `edge_length`, a number that is easily halved if there are many, equally long along
-    the polyline, or as long as it is there. A loop without corners starts at its leftmost vertex, wherever its list
-    starts. Where such spacing would make polygons meet, or put one inside another or out of it that was not, given
-    vertices are inserted until it does not.
+    The vertices lie on the given polyline. Corners (turning by more than the corner angle) stay, but of those that are
+    closer to each other than a twentieth of an edge only one, as elements there could be nothing but thin. Between two
+    of them are as many edges as come near `edge_length`, a number that is easily halved if there are many, equally long
+    along the polyline, or as long as it is there. A loop without corners starts at its leftmost vertex, wherever its
+    list starts. Where such spacing would make polygons meet, or put one inside another or out of it that was not,
+    given vertices are inserted until it does not.
     """
     length = np.array([len(loop) for loop in loops])
     group = np.arange(len(loops)) if domain is None else np.asarray(domain)
@@ -189,15 +191,33 @@ def even_spacing(arc_start: np.ndarray, position: np.ndarray, passed: np.ndarray
 def resampled_places(
     breaks: np.ndarray, position: np.ndarray, passed: np.ndarray, an_edge: float, fewest: int = 3
 ) -> np.ndarray:
-    """`even_spacing` at the target edge length.
+    """`even_spacing` at the target edge length; vertices that stay and are nearer to each other than `_ONE_CORNER` are
+    one.
 
     breaks: (k,) bool, which vertices but the last stay, the first among them; position, passed, an_edge: as of
     `vertices_as_knots`; fewest: edges that there are at least.
     """
     arc_start = np.flatnonzero(breaks)
-    arcs = np.diff(passed[np.searchsorted(position, arc_start)], append=passed[-1])
-    n_edges = count_edges(arcs / an_edge, fewest)
+    at = passed[np.searchsorted(position, arc_start)] / an_edge
+    arcs = np.diff(at, append=passed[-1] / an_edge)
+    if (arcs < _ONE_CORNER).any():
+        arc_start, arcs = _distinct_corners(arc_start, at, passed[-1] / an_edge)
+    n_edges = count_edges(arcs, fewest)
     return even_spacing(arc_start, position, passed, halvable(n_edges) if n_edges.sum() >= _HALVED else n_edges)
+
+
+def _distinct_corners(arc_start: np.ndarray, at: np.ndarray, end: float) -> tuple[np.ndarray, np.ndarray]:
+    """Corners (a,) without those that are as near to one that stays as to be one with it; the arcs between them (b,).
+
+    at, end: how far along the polyline they are, and it is, in edges. The first stays, and so does what is at the end.
+    """
+    stay = [0]
+    for number in range(1, len(at)):
+        if at[number] - at[stay[-1]] >= _ONE_CORNER:
+            stay.append(number)
+    if len(stay) > 1 and end - at[stay[-1]] < _ONE_CORNER:
+        stay.pop()
+    return arc_start[stay], np.diff(at[stay], append=end)
 
 
 def _points_at(points: np.ndarray, length: np.ndarray, loop: np.ndarray, position: np.ndarray) -> np.ndarray:
@@ -259,7 +279,7 @@ def _swallowing(samples, points, length, loop, skipped, group) -> np.ndarray:
     shared = np.isin(group, np.flatnonzero(np.bincount(group[group >= 0]) > 1))
     shared[shared] = np.add.reduceat(skipped[1], first_sample)[shared] > 0
     for k in np.flatnonzero(shared):
-        others = np.flatnonzero(group == group[k])
+        others = np.flatnonzero((group == group[k]) & (np.arange(len(group)) != k))
         others = others[np.all((places[others] > low[k]) & (places[others] < high[k]), axis=1)]
         if len(others) == 0:
             continue

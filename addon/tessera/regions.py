@@ -22,7 +22,7 @@ def face_regions(noded: Noded, faces: Faces, n_loops: int, owner: np.ndarray | N
     owner = np.zeros(n_loops, dtype=np.int64) if by_contour else owner
     traced = noded.curve < n_loops
     edge, loop, sign = noded.edge[traced], noded.curve[traced], noded.sign[traced]
-    signed = _windings(len(noded.edges), edge, loop, sign, faces, len(owner))
+    signed = windings(len(noded.edges), edge, loop, sign, faces, len(owner))
     # Which contours are around which faces: of thousands of contours, few are around the same one.
     face, around = np.nonzero(signed)
     _check_lost(noded, around, len(owner))
@@ -48,8 +48,13 @@ def face_regions(noded: Noded, faces: Faces, n_loops: int, owner: np.ndarray | N
     return np.where(depth % 2 == 1, order[highest], -1), touching
 
 
-def _windings(n_edges, edge, loop, sign, faces: Faces, n_loops: int) -> np.ndarray:
-    """(f, l) how often each loop runs around each face, counter-clockwise; from face to face across edges."""
+def windings(
+    n_edges: int, edge: np.ndarray, loop: np.ndarray, sign: np.ndarray, faces: Faces, n_loops: int
+) -> np.ndarray:
+    """(f, l) int8, how often each loop runs around each face, counter-clockwise; from face to face across edges.
+
+    edge, loop, sign: (t,) which edges each loop runs along, as of `Noded`.
+    """
     wound = np.zeros((faces.count, n_loops), dtype=np.int8)
     known = np.zeros(faces.count, dtype=bool)
     known[-1] = True

@@ -2,7 +2,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from tessera.boundary import resample, resample_loops
@@ -27,11 +27,34 @@ def test_stays_on_the_contour_simple_and_counter_clockwise(polygon, edge_length,
 
 @given(simple_polygons, st.sampled_from([1.0, 0.2]))
 @settings(deadline=None)
-def test_keeps_corners_exactly(polygon, edge_length):
+def test_keeps_corners_exactly_that_are_not_all_but_one(polygon, edge_length):
+    assume(np.linalg.norm(np.roll(polygon, -1, axis=0) - polygon, axis=1).min() > 0.05 * edge_length)
     came, goes = polygon - np.roll(polygon, 1, axis=0), np.roll(polygon, -1, axis=0) - polygon
     cosine = np.sum(came * goes, axis=1) / np.linalg.norm(came, axis=1) / np.linalg.norm(goes, axis=1)
     corners = {tuple(p) for p in polygon[cosine < np.cos(np.radians(33))]}
     assert corners <= {tuple(p) for p in resample(polygon, edge_length)}
+
+
+def test_of_corners_that_are_all_but_one_one_stays():
+    """As the hundredth of an edge by which some fonts step aside."""
+    step = np.array([[0, 0], [1, 0], [1, 0.5], [0.998, 0.502], [0.998, 1], [0, 1]])
+    result = resample(step, 0.1)
+    assert edge_lengths(result).min() > 0.09
+    assert edge_lengths(resample(step, 0.02)).min() < 0.003  # there it is a tenth of an edge
+
+
+@pytest.mark.parametrize("edge_length", [0.02, 0.026, 0.04])
+def test_loops_that_lie_well_inside_each_other_need_no_vertices_more(edge_length):
+    """Whatever rounding makes of a loop's own corners, which lie on itself and not in it."""
+    angle = np.linspace(0, 1.7 * np.pi, 60)
+    # Like an e, its leftmost corner is inside of its own bounding box.
+    outer = np.concatenate([[(-0.3, 0)], np.column_stack([np.cos(angle), np.sin(angle)])])
+    for shift in np.linspace(-1, 1, 41):
+        loops = [(0.2 * loop + [0.1, shift]).astype(np.float32).astype(float) for loop in (outer, circle(25) * 0.2)]
+        loops[1] += [0, 0.1]
+        together = resample_loops(loops, edge_length, np.zeros(2, dtype=int))
+        for loop, alone in zip(together, (resample(loop, edge_length) for loop in loops), strict=True):
+            np.testing.assert_array_equal(loop, alone)
 
 
 @pytest.mark.parametrize("n", [12, 13, 60, 5000])
