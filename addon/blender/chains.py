@@ -18,8 +18,8 @@ def polylines(n_vertices: int, edges: np.ndarray) -> list[tuple[np.ndarray, bool
     """Chains of edges as vertex indices, each with whether it is closed, in the order of their lowest vertex.
 
     edges: (e, 2) int32. A vertex without an edge is an open chain of its own. A closed chain does not repeat its first
-    vertex. Where more than two edges meet, the chain takes them in the order given: crossing outlines stay chains, and
-    the mesher's own check names the place.
+    vertex. Where more than two edges meet, the chain takes them in the order given, and a closed one is cut there into
+    closed ones that pass no vertex twice.
     """
     neighbours: dict[int, list[int]] = defaultdict(list)
     for a, b in edges.tolist():
@@ -38,8 +38,23 @@ def polylines(n_vertices: int, edges: np.ndarray) -> list[tuple[np.ndarray, bool
             before, _ = _walk(seed, neighbours)
             chain = before[:0:-1] + chain
         seen[chain] = True
-        chains.append((np.array(chain, dtype=np.int32), closed))
+        chains += [(np.array(part, dtype=np.int32), closed) for part in (_simple(chain) if closed else [chain])]
     return chains
+
+
+def _simple(chain: list[int]) -> list[list[int]]:
+    """A closed chain in parts that pass no vertex twice."""
+    parts, path, place = [], [], {}
+    for vertex in chain:
+        if vertex in place:
+            first = place[vertex]
+            parts.append(path[first:])
+            for gone in path[first:]:
+                del place[gone]
+            del path[first:]
+        place[vertex] = len(path)
+        path.append(vertex)
+    return [path, *parts]
 
 
 def _walk(seed: int, neighbours: dict[int, list[int]]) -> tuple[list[int], bool]:

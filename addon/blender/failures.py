@@ -23,6 +23,8 @@ _SENTENCES = {
     "self-intersection": "crosses or touches itself near {place}: move points there to keep its edges apart.",
     "crossing": "crosses or touches another near {place}: move them apart, or join them into one.",
 }
+# What the library calls by the names of its arguments.
+_LABELS = {"min_edge_length": "Shortest Edge"}
 _PLACE = re.compile(r"\((-?[\d.]+(?:e[+-]?\d+)?), (-?[\d.]+(?:e[+-]?\d+)?)\)")
 
 
@@ -39,7 +41,7 @@ class Failure(Exception):
             self.place = _in_world(obj, outline, error.place)
         elif isinstance(error, OutlineError) and error.point is not None:
             self.spline, self.place = error.spline, tuple(obj.matrix_world @ Vector(error.point))
-        super().__init__(_sentence(obj, error, self.spline, self.place))
+        super().__init__(_sentence(obj, error, self.spline, self.place, outline))
 
 
 def with_world_places(sentence: str, obj: bpy.types.Object, outline: Outline) -> str:
@@ -59,13 +61,18 @@ def _where(place: tuple[float, float, float]) -> str:
     return f"({', '.join(f'{x:.4g}' for x in place)})"
 
 
-def _sentence(obj: bpy.types.Object, error: ContourError, spline: int, place: tuple | None) -> str:
-    # Errors of reading name the spline themselves.
-    spline = 0 if isinstance(error, OutlineError) else spline
+def _sentence(
+    obj: bpy.types.Object, error: ContourError, spline: int, place: tuple | None, outline: Outline | None
+) -> str:
+    # Errors of reading name the spline themselves, and nobody knows those of a text.
+    spline = 0 if isinstance(error, OutlineError) or obj.type == "FONT" else spline
     name = f"{_KINDS.get(obj.type, 'Curve')} '{obj.name}'"
     if spline:
         name += f", spline {spline}"
     where = _where(place) if place else ""
     if place and error.reason in _SENTENCES:
         return f"{name} {_SENTENCES[error.reason].format(place=where)}"
-    return f"{name}: {error}" + (f" That is at {where}." if place else "")
+    text = str(error) if outline is None else with_world_places(str(error), obj, outline)
+    for python, label in _LABELS.items():
+        text = text.replace(python, label)
+    return f"{name}: {text}" + (f" That is at {where}." if place and where not in text else "")

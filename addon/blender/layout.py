@@ -62,7 +62,9 @@ def draw_failures(layout: bpy.types.UILayout, most: int, width: int) -> None:
         column = layout.column(align=True)
         draw_text(column, noted.sentence, width)
         if noted.place is not None:
-            button = column.operator("tessera.select_place", icon="RESTRICT_SELECT_OFF")
+            obj = bpy.data.objects.get(noted.obj)
+            text = "Show the Place" if obj is not None and obj.type == "FONT" else "Select the Point"
+            button = column.operator("tessera.select_place", text=text, icon="RESTRICT_SELECT_OFF")
             button.object_name, button.spline, button.place = noted.obj, noted.spline, noted.place
     if len(notes.last) > most:
         layout.label(text=f"… and {len(notes.last) - most} more: see the Info editor")

@@ -137,8 +137,10 @@ def _outcome(task: Task, asked: list[Wanted], made: list[tessera.Mesh | tessera.
         if error is not None:
             return Failure(task.obj, error, wanted.outline)
         warnings += [with_world_places(warning, task.obj, wanted.outline) for warning in mesh.report.warnings]
-    pairs = list(zip(asked, made, strict=True))
-    pieces = tuple(Piece(one.outline, mesh.vertices, mesh.triangles, mesh.region) for one, mesh in pairs)
+    pieces = tuple(
+        Piece(outline, mesh.vertices, mesh.triangles, outline.loops_of(mesh.region))
+        for outline, mesh in zip((wanted.outline for wanted in asked), made, strict=True)
+    )
     reports = tuple(mesh.report for mesh in made)
     return Meshed(task, asked[0].edge_length, pieces, reports, tuple(dict.fromkeys(warnings)))
 
@@ -206,7 +208,7 @@ def _shared_count(task: Task) -> list[int]:
     lengths = []
     for outline in task.outlines:
         try:
-            lengths.append(expected_edge_length(outline.loops, wanted))
+            lengths.append(expected_edge_length(outline.domain, wanted))
         except tessera.ContourError as error:
             raise Failure(task.obj, error, outline) from error
     areas = np.square(lengths)  # nearly: so many triangles as long as that

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..tessera.constraints import Domain
 from ..tessera.uncrossed import uncrossed
 from .errors import OutlineError
 from .plane import Plane, fit_plane
@@ -22,13 +23,17 @@ NOTHING = "There is no outline in it, or none that its modifiers leave. Draw or 
 
 @dataclass(frozen=True)
 class Polyline:
-    """points: (k, 3) float64 in the object's space; spline: its number as the user counts it, from 1, or 0."""
+    """points: (k, 3) float64 in the object's space; spline: its number as the user counts it, from 1, or 0.
+
+    region: of an `Outline`, where there are several.
+    """
 
     points: np.ndarray
     closed: bool
     spline: int = 0
     material: int = 0
     smooth: bool = True
+    region: int = 0
 
 
 @dataclass(frozen=True)
@@ -50,7 +55,8 @@ class Outline:
     loops: (k, 2) float64 each, in the plane and in world units, none repeating its first point; plane: between them and
     the object's space; splines: (l,) int32, the number of the spline of each loop as the user counts it, from 1, or 0
     for what is no spline; materials: (l,) int32, in slots; smooth: (l,) bool; slots: the object's materials; part: set
-    for a part of a mesh in Edit Mode, whose boundary must be kept.
+    for a part of a mesh in Edit Mode, whose boundary must be kept; regions: (l,) int32, by which loops bound regions
+    with common vertices, as faces of several materials do; or None, and loops inside each other are holes and islands.
     """
 
     loops: tuple[np.ndarray, ...]
@@ -60,11 +66,24 @@ class Outline:
     smooth: np.ndarray
     slots: tuple[bpy.types.Material | None, ...] = ()
     part: Part | None = None
+    regions: np.ndarray | None = None
 
     @property
     def size(self) -> float:
         """The longer side of the bounding box of the largest loop, in world units."""
         return max(float(np.ptp(loop, axis=0).max()) for loop in self.loops)
+
+    @property
+    def domain(self) -> Sequence[np.ndarray] | Domain:
+        """What the library takes for it."""
+        return self.loops if self.regions is None else Domain(self.loops, self.regions.tolist(), None, ())
+
+    def loops_of(self, region: np.ndarray) -> np.ndarray:
+        """(m,) for each triangle, by the region that the library gives it, the index of a loop that has its traits."""
+        if self.regions is None:
+            return region
+        first = np.unique(self.regions, return_index=True)[1]
+        return first[region].astype(np.int32)
 
     def loop_near(self, place: Sequence[float]) -> int:
         """The index of the loop that passes closest to a place (2,), such as a ContourError's."""
@@ -105,6 +124,7 @@ def make_outline(
     tolerance = 1e-6 * float(np.ptp(points, axis=0).max())
     loops = [_closed(polyline, tolerance) for polyline in polylines]
     plane = fit_plane(np.concatenate(loops), to_world, up)
+    regions = np.array([polyline.region for polyline in polylines], dtype=np.int32)
     return Outline(
         tuple(plane.flatten(loop) for loop in loops),
         plane,
@@ -112,6 +132,7 @@ def make_outline(
         np.array([polyline.material for polyline in polylines], dtype=np.int32),
         np.array([polyline.smooth for polyline in polylines], dtype=bool),
         slots,
+        regions=regions if len(np.unique(regions)) > 1 else None,
     )
 
 

@@ -50,7 +50,8 @@ def node_meshes(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> 
         placed = instance.persistent_id[1] != _NO_NUMBER
         if instance.object.type == "MESH" and (placed or not own_is_mesh):
             mesh = instance.object.data
-            yield borders(mesh), facing(mesh), np.array(instance.matrix_world, dtype=np.float64), _materials(mesh)
+            world = np.array(instance.matrix_world, dtype=np.float64)
+            yield borders(mesh, by_material=True), facing(mesh), world, _materials(mesh)
         elif instance.object.type == "CURVE" and not hasattr(evaluated, "evaluated_geometry"):
             message = "Its geometry nodes make curves, which can be read from Blender 4.5 on. Add a Fill Curve node."
             raise OutlineError("too-few-points", message)

@@ -1,5 +1,7 @@
 """Mesh objects to polylines: the borders of faces, and edges that have no face."""
 
+from dataclasses import dataclass
+
 import bpy
 import numpy as np
 
@@ -18,7 +20,7 @@ def read_mesh(evaluated: bpy.types.Object) -> tuple[list[Polyline], np.ndarray]:
     """
     mesh = evaluated.to_mesh()
     try:
-        made, has_faces = borders(mesh), len(mesh.polygons) > 0
+        made, has_faces = borders(mesh, by_material=True), len(mesh.polygons) > 0
         if has_faces:
             _check_flat(mesh, made)
         return made, facing(mesh)
@@ -49,10 +51,12 @@ def _check_flat(mesh: bpy.types.Mesh, outlines: list[Polyline]) -> None:
             raise OutlineError("not-planar", _NOT_FLAT, error.point) from error
 
 
-def borders(mesh: bpy.types.Mesh) -> list[Polyline]:
+def borders(mesh: bpy.types.Mesh, by_material: bool = False) -> list[Polyline]:
     """Chains of the edges that bound something, with the material and shading of the faces beside them.
 
     A vertex inside a face is no chain; one that belongs to no face and no edge is a chain of its own, which is open.
+    by_material: where there are several, the faces of each are a region with borders of its own, and what has no face
+    is another.
     """
     points = np.empty((len(mesh.vertices), 3), dtype=np.float32)
     edges = np.empty((len(mesh.edges), 2), dtype=np.int32)
@@ -61,26 +65,48 @@ def borders(mesh: bpy.types.Mesh) -> list[Polyline]:
     mesh.edges.foreach_get("vertices", edges.ravel())
     mesh.loops.foreach_get("edge_index", face_edges)
     mesh.loops.foreach_get("vertex_index", face_vertices)
-    chains = polylines(len(points), outline_edges(edges, face_edges))
-    if len(face_edges):
-        chains = [(chain, closed) for chain, closed in chains if len(chain) > 1]
-    material, smooth = _at_vertices(mesh, face_vertices)
-    points = points.astype(np.float64)
-    return [
-        Polyline(points[chain], closed, 0, int(material[chain].min()), bool(smooth[chain].all()))
-        for chain, closed in chains
-    ]
+    faces = _of_faces(mesh)
+    material, smooth = _at_vertices(len(points), face_vertices, faces)
+    slots = np.unique(faces.material) if by_material else ()
+    bounds = [outline_edges(edges, face_edges)]
+    if len(slots) > 1:
+        own = [np.bincount(face_edges[faces.corners(slot)], minlength=len(edges)) for slot in slots]
+        bounds = [*(edges[count == 1] for count in own), edges[sum(own) == 0]]
+    made, points = [], points.astype(np.float64)
+    for region, own in enumerate(bounds):
+        for chain, closed in polylines(len(points), own):
+            if len(chain) > 1 or not len(face_edges):
+                slot = slots[region] if region < len(slots) > 1 else material[chain].min()
+                made.append(Polyline(points[chain], closed, 0, int(slot), bool(smooth[chain].all()), region))
+    return made
 
 
-def _at_vertices(mesh: bpy.types.Mesh, face_vertices: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+@dataclass(frozen=True)
+class _Faces:
+    """material, smooth, size: (f,) of each face: the slot, whether it is shaded smooth, how many corners it has."""
+
+    material: np.ndarray
+    smooth: np.ndarray
+    size: np.ndarray
+
+    def corners(self, slot: int) -> np.ndarray:
+        """Which corners, one face behind the other, are of faces of a material."""
+        return np.repeat(self.material == slot, self.size)
+
+
+def _of_faces(mesh: bpy.types.Mesh) -> _Faces:
+    faces = _Faces(*(np.empty(len(mesh.polygons), dtype=kind) for kind in (np.int32, bool, np.int32)))
+    mesh.polygons.foreach_get("material_index", faces.material)
+    mesh.polygons.foreach_get("use_smooth", faces.smooth)
+    mesh.polygons.foreach_get("loop_total", faces.size)
+    return faces
+
+
+def _at_vertices(n_vertices: int, face_vertices: np.ndarray, faces: _Faces) -> tuple[np.ndarray, np.ndarray]:
     """At every vertex, the first material among its faces, and whether all are smooth; 0 and True without a face."""
-    of_face, is_smooth, size = (np.empty(len(mesh.polygons), dtype=t) for t in (np.int32, bool, np.int32))
-    mesh.polygons.foreach_get("material_index", of_face)
-    mesh.polygons.foreach_get("use_smooth", is_smooth)
-    mesh.polygons.foreach_get("loop_total", size)
-    material = np.full(len(mesh.vertices), np.iinfo(np.int32).max, dtype=np.int32)
-    np.minimum.at(material, face_vertices, np.repeat(of_face, size))
+    material = np.full(n_vertices, np.iinfo(np.int32).max, dtype=np.int32)
+    np.minimum.at(material, face_vertices, np.repeat(faces.material, faces.size))
     material[material == np.iinfo(np.int32).max] = 0
-    smooth = np.ones(len(mesh.vertices), dtype=bool)
-    np.logical_and.at(smooth, face_vertices, np.repeat(is_smooth, size))
+    smooth = np.ones(n_vertices, dtype=bool)
+    np.logical_and.at(smooth, face_vertices, np.repeat(faces.smooth, faces.size))
     return material, smooth

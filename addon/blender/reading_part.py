@@ -22,7 +22,8 @@ def read_parts(obj: bpy.types.Object) -> list[Outline]:
     """One outline for each flat part of the selection, its `part` set; edges that are seams, sharp or beside another
     material are kept, as borders between parts (one that ends inside a part is none, and goes).
 
-    Raises OutlineError: "too-few-points" where nothing is selected, "open", "not-planar", "zero-area".
+    Raises OutlineError: "too-few-points" where nothing is selected, "open", "not-planar", "zero-area", "overlap" for a
+    loop whose inside has faces.
     """
     bm = bmesh.from_edit_mesh(obj.data)
     to_world = np.array(obj.matrix_world.to_3x3(), dtype=np.float64)
@@ -32,8 +33,11 @@ def read_parts(obj: bpy.types.Object) -> list[Outline]:
     slots = tuple(slot.material for slot in obj.material_slots)
     outlines = [_part_of_faces(faces, to_world, slots) for faces in _flat_parts(bm)]
     wires = [edge for edge in bm.edges if edge.select and not any(face.select for face in edge.link_faces)]
+    if outlines:  # vertex mode selects also edges between the faces that are meant
+        wires = _closed([edge for edge in wires if len(edge.link_faces) < 2])
     if wires:
         outlines.append(_part_of_edges(wires, to_world, slots))
+        _check_free(wires, outlines[-1])
     if not outlines:
         raise OutlineError("too-few-points", _NO_SELECTION)
     return outlines
@@ -84,6 +88,32 @@ def _part_of_edges(wires: list[bmesh.types.BMEdge], to_world: np.ndarray, slots:
     beside = next((edge.link_faces[0] for edge in wires if edge.link_faces), None)
     traits = (0, True) if beside is None else (beside.material_index, beside.smooth)
     return _outline(set(wires), np.zeros(0, dtype=np.int32), to_world, slots, (0.0, 0.0, 1.0), traits)
+
+
+def _closed(edges: list[bmesh.types.BMEdge]) -> list[bmesh.types.BMEdge]:
+    """The edges without those that lead to an open end."""
+    at = defaultdict(set)
+    for edge in edges:
+        for vert in edge.verts:
+            at[vert].add(edge)
+    ends = [vert for vert, there in at.items() if len(there) == 1]
+    while ends:
+        vert = ends.pop()
+        if len(at[vert]) == 1:
+            edge = at[vert].pop()
+            other = edge.other_vert(vert)
+            at[other].remove(edge)
+            ends.append(other)
+    return [edge for edge in edges if edge in at[edge.verts[0]]]
+
+
+def _check_free(wires: list[bmesh.types.BMEdge], outline: Outline) -> None:
+    """No faces are where the loops would be filled: on both sides of an edge, in the plane of the outline."""
+    normal = np.cross(*outline.plane.axes)
+    for edge in wires:
+        if len(edge.link_faces) > 1 and all(abs(np.dot(f.normal, normal)) > math.cos(_FLAT) for f in edge.link_faces):
+            message = "A selected edge has faces on both sides. Select the faces themselves, to have them meshed again."
+            raise OutlineError("overlap", message, np.array(edge.verts[0].co, dtype=np.float64))
 
 
 def _outline(

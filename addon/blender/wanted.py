@@ -67,7 +67,7 @@ def _to_counts(some: list[Wanted], settings: MeshSettings) -> Steps[Outcomes]:
     def mesh_at(numbers: list[int], lengths: list[float]) -> Steps[Outcomes]:
         return _at_lengths([some[number] for number in numbers], lengths, settings)
 
-    return mesh_to_counts([one.outline.loops for one in some], [one.n_triangles for one in some], mesh_at)
+    return mesh_to_counts([one.outline.domain for one in some], [one.n_triangles for one in some], mesh_at)
 
 
 def _at_lengths(some: list[Wanted], lengths: list[float], settings: MeshSettings) -> Steps[Outcomes]:
@@ -83,4 +83,4 @@ def _at_lengths(some: list[Wanted], lengths: list[float], settings: MeshSettings
 
 def _request(one: Wanted, length: float) -> Request:
     sizing = sizing_of(one.settings, one.targets, length, NEAR_SHARE * length)
-    return Request(one.outline.loops, length, sizing, min(one.settings.min_edge_length, length) or None)
+    return Request(one.outline.domain, length, sizing, min(one.settings.min_edge_length, length) or None)

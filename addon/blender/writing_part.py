@@ -139,5 +139,13 @@ def _new_face(
     example = old[surface.find_nearest(centre)[2]]
     face = bm.faces.new(verts, example)
     for loop in face.loops:
-        loop.copy_from_face_interp(example, False)
+        _copy_from_face(loop, example)
     return face
+
+
+def _copy_from_face(loop: bmesh.types.BMLoop, example: bmesh.types.BMFace) -> None:
+    """What a face's corners have, at the place of a corner, but nothing of its vertex."""
+    try:
+        loop.copy_from_face_interp(example, False)
+    except TypeError:  # Blender 4.2 takes both as one argument
+        loop.copy_from_face_interp((example, False))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .budget import enclosed_area, total_length
-from .constraints import planar_domains
+from .constraints import Domain, planar_domains
 from .contour import clean_domains, nesting
 from .errors import ContourError
 from .mesh import Mesh
@@ -22,12 +22,12 @@ MOST_TRIES = 6
 _SHARE, _BESIDE = 1.05, 0.25
 
 
-def expected_edge_length(loops: Sequence[ArrayLike], n_triangles: int) -> float:
-    """The target edge length, in the loops' unit, that gives about so many triangles of one size.
+def expected_edge_length(domain: Sequence[ArrayLike] | Domain, n_triangles: int) -> float:
+    """The target edge length, in the domain's unit, that gives about so many triangles of one size.
 
-    loops: (k, 2) each, as for `mesh`. Raises ContourError for loops that cannot be meshed.
+    domain: loops (k, 2), as for `mesh`, or regions. Raises ContourError for what cannot be meshed.
     """
-    (cleaned,), planar = planar_domains([loops], clean_domains([loops]))
+    (cleaned,), planar = planar_domains([domain], clean_domains([() if isinstance(domain, Domain) else domain]))
     if isinstance(cleaned, ContourError):
         raise cleaned
     if not cleaned:
@@ -45,7 +45,7 @@ MeshAt = Callable[[list[int], list[float]], Steps[list[Mesh | ContourError]]]
 
 
 def mesh_to_counts(
-    domains: Sequence[Sequence[ArrayLike]], wanted: Sequence[int], mesh_at: MeshAt
+    domains: Sequence[Sequence[ArrayLike] | Domain], wanted: Sequence[int], mesh_at: MeshAt
 ) -> Steps[list[Mesh | ContourError]]:
     """Mesh domains until the number of triangles of each is within 10 % of the wanted one.
 
@@ -53,9 +53,9 @@ def mesh_to_counts(
     the sizing leave no such mesh, the closest has a warning.
     """
     results, searches = {}, {}
-    for number, (loops, n_triangles) in enumerate(zip(domains, wanted, strict=True)):
+    for number, (domain, n_triangles) in enumerate(zip(domains, wanted, strict=True)):
         try:
-            searches[number] = _Search(n_triangles, float(np.log(expected_edge_length(loops, n_triangles))))
+            searches[number] = _Search(n_triangles, float(np.log(expected_edge_length(domain, n_triangles))))
         except ContourError as error:
             results[number] = error
     for tries in range(MOST_TRIES):

@@ -84,4 +84,6 @@ def repeated_warnings(loops: Sequence[ArrayLike], cleaned: list[np.ndarray]) -> 
         len(loop) - len(clean) - int(len(loop) > len(clean) and np.array_equal(loop[0], loop[-1]))
         for loop, clean in zip(loops, cleaned, strict=True)
     )
-    return (f"{repeated} repeated points of contours are left out",) if repeated else ()
+    if not repeated:
+        return ()
+    return (f"{repeated} repeated point{'s' * (repeated > 1)} of contours {'are' if repeated > 1 else 'is'} left out",)

@@ -1,17 +1,20 @@
 """Every kind of object is read as Blender shows it, and nothing is left of the reading."""
 
 import math
+from pathlib import Path
 
 import bpy
 import numpy as np
 import pytest
-from mathutils import Euler, Matrix
+from mathutils import Euler, Matrix, Vector
 
+from addon import tessera
 from addon.blender import writing
 from addon.blender.errors import OutlineError
 from addon.blender.kinds import is_readable
+from addon.blender.reading_curve import read_curve
 from tests.blender import sources
-from tests.blender.drawing import SQUARE, circle, poly_curve, star, text
+from tests.blender.drawing import SQUARE, circle, poly_curve, select, star, text
 from tests.blender.sources import grease_pencil, hair_curves, mesh_object, read
 
 
@@ -396,3 +399,110 @@ def test_tiny_and_huge_objects(size):
     curve = poly_curve(STAR * size, dimensions="3D")
     (outline,) = read(curve)
     assert outline.size == pytest.approx(size * np.ptp(STAR[:, :2], axis=0).max(), rel=1e-6)
+
+
+def bundled_font(name):
+    (path,) = Path(bpy.utils.resource_path("LOCAL"), "datafiles", "fonts").glob(f"{name}.*")
+    return bpy.data.fonts.load(str(path))
+
+
+@pytest.mark.parametrize(("body", "font"), [("Query €", None), ("AQ& 4", "Inter"), ("fluffy", "DejaVuSansMono")])
+def test_letters_whose_contours_cross_are_united_as_fonts_mean_them(body, font):
+    obj = text(body)
+    obj.data.font = bundled_font(font) if font else obj.data.font
+    obj.data.space_character = 0.8  # so that letters overlap, too
+    (outline,) = read(obj)
+    mesh = tessera.mesh(outline.loops, 0.03)
+    assert mesh.report.q_worst > 0.3 and set(outline.splines) <= set(range(1, 40))
+    drawn = [polyline.points for polyline in read_curve(obj, bpy.context.evaluated_depsgraph_get())]
+    places = mesh.vertices[mesh.triangles].mean(axis=1)
+    turns = sum(winding(places, loop[:, :2]) for loop in drawn)
+    assert (turns != 0).mean() > 0.99  # all but those beside a curve that the mesh cuts short
+
+
+def winding(places, loop):
+    """How often a loop runs around places (n, 2)."""
+    a, b = loop - places[:, None], np.roll(loop, -1, axis=0) - places[:, None]
+    turn = np.arctan2(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0], (a * b).sum(axis=-1))
+    return np.rint(turn.sum(axis=1) / (2 * np.pi))
+
+
+@pytest.mark.parametrize("body", ["e", "\ne", "\n\n e"])
+def test_a_letter_has_the_same_mesh_wherever_it_stands(body):
+    (outline,) = read(text(body))
+    mesh = tessera.mesh(outline.loops, 0.026)
+    assert mesh.report.n_triangles == 384 and mesh.report.q_worst > 0.9
+
+
+@pytest.mark.parametrize("normal", [(0, 0, 1), (0, 0, -1), (0.6, 0, -0.8)])
+def test_a_flat_mesh_is_meshed_from_the_side_that_its_faces_face(normal):
+    obj = mesh_object(flat(np.array(SQUARE)), [], [(0, 1, 2, 3)])
+    turn = Vector((0, 0, 1)).rotation_difference(Vector(normal)).to_matrix().to_4x4()
+    obj.data.transform(turn)
+    select(obj)
+    bpy.ops.tessera.mesh_curve(edge_length=0.3)
+    made = bpy.context.object.data
+    assert all((polygon.normal - Vector(normal)).length < 1e-5 for polygon in made.polygons)
+
+
+def test_faces_of_each_material_are_a_region_and_share_vertices():
+    points = [(x, y, 0) for y in range(4) for x in range(4)]
+    faces = [(4 * y + x, 4 * y + x + 1, 4 * y + x + 5, 4 * y + x + 4) for y in range(3) for x in range(3)]
+    obj = mesh_object(points, [], faces)
+    for name in "abc":
+        obj.data.materials.append(bpy.data.materials.new(name))
+    slots = [0, 1, 0, 1, 2, 1, 0, 1, 0]  # a board, with a hole in the middle that another fills
+    obj.data.polygons.foreach_set("material_index", slots)
+    for wanted in ({"edge_length": 0.3}, {"size_by": "TRIANGLE_COUNT", "triangle_count": 300}):
+        select(obj)
+        bpy.ops.tessera.mesh_curve(**wanted)
+        made = bpy.context.object.data
+        area = np.zeros(3)
+        for polygon in made.polygons:
+            area[polygon.material_index] += polygon.area
+            at = polygon.center
+            assert slots[3 * int(at.y) + int(at.x)] == polygon.material_index
+        assert area == pytest.approx([4, 4, 1], rel=1e-5)
+        edges = [key for polygon in made.polygons for key in polygon.edge_keys]
+        border = [key for key in set(edges) if edges.count(key) == 1]
+        length = sum((made.vertices[a].co - made.vertices[b].co).length for a, b in border)
+        assert length == pytest.approx(12, rel=1e-5)
+
+
+def test_what_is_switched_off_is_read_only_where_nothing_else_has_a_say_in_it():
+    collection = bpy.data.collections.new("Off")
+    bpy.context.scene.collection.children.link(collection)
+    obj = poly_curve(SQUARE)
+    collection.objects.link(obj)
+    bpy.context.scene.collection.objects.unlink(obj)
+    bpy.context.view_layer.layer_collection.children["Off"].exclude = True
+    obj.location.x = 7  # its world matrix is of before
+    (outline,) = read(obj)
+    assert np.ptp(outline.loops[0], axis=0).tolist() == [1, 1]
+    obj.scale.x = 3
+    (outline,) = read(obj)
+    assert np.ptp(outline.loops[0], axis=0).tolist() == [3, 1]
+    obj.modifiers.new("Array", "ARRAY")
+    with pytest.raises(OutlineError, match="switched off in this view layer") as error:
+        read(obj)
+    assert error.value.reason == "not-evaluated"
+    obj.modifiers[0].show_viewport = False
+    assert read(obj)
+    obj.parent = bpy.data.objects.new("Parent", None)
+    with pytest.raises(OutlineError, match="by the eye"):
+        read(obj)
+
+
+def test_what_is_no_number_is_said_with_its_spline():
+    obj = poly_curve(SQUARE, SQUARE, [(3, 0), (4, float("nan")), (4, 1)])
+    with pytest.raises(OutlineError, match="Spline 3 has a point whose coordinate"):
+        read(obj)
+
+
+def test_modifiers_on_an_extrusion_are_said():
+    obj = poly_curve(SQUARE)
+    obj.data.extrude = 0.1
+    obj.modifiers.new("Weld", "WELD")
+    with pytest.raises(OutlineError, match="extrusion or bevel") as error:
+        read(obj)
+    assert error.value.reason == "not-planar"

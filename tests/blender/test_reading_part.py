@@ -250,3 +250,32 @@ def test_undo_is_one_step_in_edit_mode():
     assert obj.mode == "EDIT"
     assert [face.index for face in bmesh.from_edit_mesh(obj.data).faces if face.select] == [2]
     assert len(bmesh.from_edit_mesh(obj.data).faces) == 6
+
+
+def test_vertex_mode_selects_edges_that_are_not_meant():
+    obj = grid()
+    edit(obj)
+    bpy.ops.mesh.select_mode(type="VERT")
+    bm = bmesh.from_edit_mesh(obj.data)
+    bm.faces.ensure_lookup_table()
+    for number in (0, 3):  # far from each other, and one of the edges between them
+        for vert in bm.faces[number].verts:
+            vert.select = True
+    for vert in bm.faces[1].verts:
+        vert.select = vert.select or vert.co.y == 0
+    bm.select_flush(True)
+    assert any(edge.select and not any(face.select for face in edge.link_faces) for edge in bm.edges)
+    parts = read(obj)
+    assert sorted(int(face) for part in parts for face in part.part.faces) == [0, 3]
+
+
+def test_a_loop_inside_of_flat_faces_is_refused():
+    obj = grid()
+    block = {5, 6, 9, 10}
+    around = [
+        edge.index for edge in obj.data.edges if sum(edge.key in obj.data.polygons[f].edge_keys for f in block) == 1
+    ]
+    edit(obj, edges=around)
+    with pytest.raises(OutlineError, match="faces on both sides") as error:
+        read(obj)
+    assert error.value.reason == "overlap"
