@@ -89,7 +89,7 @@ def copy_custom_properties(source: bpy.types.ID, target: bpy.types.ID) -> None:
         if name in source.bl_rna.properties:
             continue
         target[name] = value
-        if isinstance(value, (int, float, str)):
+        if isinstance(value, (int, float, str)) or getattr(value, "typecode", "") in ("i", "f", "d", "b"):
             target.id_properties_ui(name).update_from(source.id_properties_ui(name))
 
 

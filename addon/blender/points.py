@@ -9,6 +9,8 @@ import bpy
 import numpy as np
 
 from ..tessera.errors import ContourError
+from .evaluating import evaluated_object
+from .reading_strokes import read_curves
 
 # What every control point of a curve object has, by the names that the Curve's own panel gives them.
 _OF_SPLINES = {"weight": "weight_softbody", "radius": "radius", "tilt": "tilt"}
@@ -81,11 +83,10 @@ def _attribute(data, name: str) -> tuple[np.ndarray, np.ndarray]:
 def object_edges(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> tuple[np.ndarray, np.ndarray]:
     """Start and end (k, 3) float64, in world space, of all edges of an object; a point is an edge of no length.
 
-    An empty, or another object without points, is its origin. Modifiers are applied.
+    An empty, or another object without points, is its origin. Modifiers are applied. Raises OutlineError.
     """
-    evaluated = obj.evaluated_get(depsgraph)
-    to_world = np.array(evaluated.matrix_world, dtype=np.float64)
-    if obj.type in {"GREASEPENCIL", "GPENCIL"}:
+    evaluated, to_world = evaluated_object(obj, depsgraph)
+    if obj.type in {"CURVES", "GREASEPENCIL", "GPENCIL"}:
         start, end = _stroke_edges(evaluated)
     else:
         start, end = _mesh_edges(evaluated)
@@ -118,8 +119,10 @@ def _stroke_edges(evaluated: bpy.types.Object) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _strokes(obj: bpy.types.Object) -> Iterator[np.ndarray]:
-    """The points (k, 3) of each stroke of the frame that is shown."""
-    if obj.type == "GREASEPENCIL":
+    """The points (k, 3) of each curve, or of each stroke of the frame that is shown."""
+    if obj.type == "CURVES":
+        yield from (polyline.points for polyline in read_curves(obj.data))
+    elif obj.type == "GREASEPENCIL":
         for drawing in _drawings(obj):
             if len(drawing.attributes["position"].data):
                 position = _gathered(drawing.attributes["position"].data, "vector")

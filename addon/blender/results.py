@@ -45,15 +45,18 @@ def rewrite(target: bpy.types.Object, meshed: Meshed, draft: bool = False) -> No
 def select(
     context: bpy.types.Context, made: list[bpy.types.Object], sources: list[bpy.types.Object], active: int
 ) -> None:
-    """Select the new objects in place of their sources, as Blender's own Convert does.
+    """Select the new objects in place of their sources, as Blender's own Convert does; if they are to be seen.
 
     active: which of them is the active one, or of their sources, where they were joined.
     """
     for source in sources:
         source.select_set(False)
-    for obj in made:
+    context.view_layer.update()  # before that, it does not know of new collections
+    shown = [obj for obj in made if context.view_layer.objects.get(obj.name) == obj]
+    for obj in shown:
         obj.select_set(True)
-    context.view_layer.objects.active = made[min(active, len(made) - 1)]
+    if shown:
+        context.view_layer.objects.active = shown[min(active, len(shown) - 1)]
 
 
 def _move(objects: list[bpy.types.Object], name: str) -> None:
@@ -61,9 +64,13 @@ def _move(objects: list[bpy.types.Object], name: str) -> None:
     collection = bpy.data.collections.get(name)
     if collection is None:
         collection = bpy.data.collections.new(name)
+    if collection.library is not None:
+        return  # nothing can be put into it, and results are better beside their sources than nowhere
     if collection not in bpy.context.scene.collection.children_recursive:
         bpy.context.scene.collection.children.link(collection)
     for obj in objects:
-        for old in obj.users_collection:
-            old.objects.unlink(obj)
-        collection.objects.link(obj)
+        old = [each for each in obj.users_collection if each != collection]
+        if collection.objects.get(obj.name) != obj:
+            collection.objects.link(obj)
+        for each in old:
+            each.objects.unlink(obj)

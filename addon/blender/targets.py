@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import tessera
 from ..tessera.sampling import cut
+from .errors import OutlineError
 from .outline import Outline
 from .points import object_edges, weighted_points
 from .settings import Settings
@@ -62,7 +63,10 @@ def _near_ends(name: str, depsgraph: bpy.types.Depsgraph) -> tuple[np.ndarray, n
     if other is None:
         message = f"The sizing refers to an object, and there is none named '{name}'. Choose one."
         raise tessera.ContourError("sizing", message)
-    ends = object_edges(other, depsgraph)
+    try:
+        ends = object_edges(other, depsgraph)
+    except OutlineError as error:
+        raise tessera.ContourError("sizing", f"Of the object '{name}' that the sizing refers to: {error}") from error
     _check_finite(np.concatenate(ends), f"A place of '{name}'")
     return ends
 

@@ -7,7 +7,6 @@ import numpy as np
 
 from .copying import copy_custom_properties, copy_object, link_beside
 from .geometry import Geometry, Piece, join
-from .plane import inverse
 from .writing_part import write_part
 
 __all__ = ["Piece", "write_again", "write_in_place", "write_joined", "write_mesh", "write_part"]
@@ -22,22 +21,27 @@ def write_mesh(source: bpy.types.Object, pieces: Sequence[Piece]) -> bpy.types.O
 
     It has the source's transform, parent, collections, materials, custom properties and display.
     """
-    obj = _new_object(f"{source.name} Mesh", source, join(pieces))
+    obj = _new_object(_mesh_name(source), source, join(pieces))
     copy_object(source, obj)
     link_beside(source, obj)
     return obj
 
 
 def write_joined(parts: Sequence[tuple[bpy.types.Object, Sequence[Piece]]]) -> bpy.types.Object:
-    """One new mesh object of several sources, beside the first and with all that this has; the sources stay."""
-    first = parts[0][0]
-    to_first = inverse(np.array(first.matrix_world, dtype=np.float64))
+    """One new mesh object of several sources, beside the first and with all that this has; the sources stay.
+
+    The first is that of those whose scale is zero along no axis, as others may not lie in the plane of such a one.
+    """
+    matrices = [np.array(source.matrix_world, dtype=np.float64) for source, _ in parts]
+    whole = [number for number, matrix in enumerate(matrices) if np.linalg.det(matrix[:3, :3]) != 0.0]
+    number = whole[0] if whole else 0
+    first = parts[number][0]
+    to_first = (np.linalg.inv if whole else np.linalg.pinv)(matrices[number])
     pieces, placing = [], []
-    for source, own in parts:
-        matrix = None if source == first else to_first @ np.array(source.matrix_world, dtype=np.float64)
+    for (source, own), matrix in zip(parts, matrices, strict=True):
         pieces += own
-        placing += [matrix] * len(own)
-    obj = _new_object(f"{first.name} Mesh", first, join(pieces, placing))
+        placing += [None if source == first else to_first @ matrix] * len(own)
+    obj = _new_object(_mesh_name(first), first, join(pieces, placing))
     copy_object(first, obj)
     link_beside(first, obj)
     return obj
@@ -46,8 +50,9 @@ def write_joined(parts: Sequence[tuple[bpy.types.Object, Sequence[Piece]]]) -> b
 def write_in_place(source: bpy.types.Object, pieces: Sequence[Piece]) -> bpy.types.Object:
     """The object as a mesh: what refers to it refers to the mesh object, which has its name and all that it had.
 
-    Its modifiers are in the mesh, as in Blender's own Convert; its old data go where no other object has them. A mesh
-    object stays the same object.
+    Its modifiers are in the mesh, as in Blender's own Convert; its old data go where no other object has them, and with
+    them what was of their points: weights, colours, shape keys. A mark as an asset goes, too. A mesh object stays the
+    same object.
     """
     geometry, old = join(pieces), source.data
     if source.type == "MESH":
@@ -82,6 +87,12 @@ def write_again(target: bpy.types.Object, pieces: Sequence[Piece]) -> None:
         if name not in target.vertex_groups:
             target.vertex_groups.new(name=name)
     _fill(target, geometry, target.data)
+
+
+def _mesh_name(source: bpy.types.Object) -> str:
+    """The source's name and "Mesh", where Blender's limit leaves no room for both, with a shorter one."""
+    longest = 255 if bpy.app.version >= (5, 0) else 63
+    return source.name.encode()[: longest - len(" Mesh")].decode(errors="ignore") + " Mesh"
 
 
 def _new_object(name: str, source: bpy.types.Object, geometry: Geometry) -> bpy.types.Object:

@@ -126,11 +126,12 @@ def stroke(*points):
     return mesh
 
 
-@pytest.mark.parametrize("kind", ["empty", "mesh", "strokes"])
+@pytest.mark.parametrize("kind", ["empty", "mesh", "strokes", "curves"])
 def test_triangles_are_smaller_near_an_object(kind):
     curve = poly_curve(SQUARE)
-    if kind == "strokes":
-        near = grease_pencil(np.column_stack([np.zeros(9), np.linspace(0, 0.8, 9), np.zeros(9)]), cyclic=False)
+    if kind in ("strokes", "curves"):
+        make = grease_pencil if kind == "strokes" else hair_curves
+        near = make(np.column_stack([np.zeros(9), np.linspace(0, 0.8, 9), np.zeros(9)]), cyclic=False)
         near.name = "Near"
     else:
         near = bpy.data.objects.new("Near", None if kind == "empty" else stroke((0, 0), (0, 0.8)))
@@ -193,7 +194,7 @@ def test_what_a_sizing_refers_to_and_is_no_number_is_one_clear_report():
     near.location.y = float("nan")
     square = poly_curve(SQUARE, name="Square")
     square.data.splines[0].points[2].radius = float("nan")
-    with pytest.raises(RuntimeError, match=r"^Error: Curve 'Square': .*'Near' .*not a finite number"):
+    with pytest.raises(RuntimeError, match=r"^Error: Curve 'Square': .*'Near' .*not finite"):
         bpy.ops.tessera.mesh_curve(use_object=True, object_name="Near")
     with pytest.raises(RuntimeError, match=r"^Error: Curve 'Square': .*'radius' .*not a finite number"):
         bpy.ops.tessera.mesh_curve(use_weight=True, weight_name="radius")

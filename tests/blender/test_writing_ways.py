@@ -4,9 +4,10 @@ import bpy
 import numpy as np
 import pytest
 
+from addon.blender import results
 from addon.blender.writing import write_again, write_in_place, write_mesh
 from tests.blender import sources
-from tests.blender.drawing import SQUARE, circle, counts, poly_curve, star, triangles, vertices
+from tests.blender.drawing import SQUARE, circle, counts, poly_curve, select, star, triangles, vertices
 from tests.blender.sources import mesh_object, meshed, read
 from tests.blender.test_writing import border, values, write
 
@@ -149,3 +150,49 @@ def test_undo_is_whole(way):
     check_decoration(logo)
     bpy.ops.ed.redo()
     assert [obj.type for obj in bpy.data.objects if obj.name.startswith("Logo")].count("MESH") == 1
+
+
+def test_of_joined_objects_one_may_be_flat():
+    """Its own space has no room for what lies in another plane."""
+    one, other = poly_curve(SQUARE, name="Flat"), poly_curve(SQUARE, name="Upright")
+    one.scale.z = 0
+    other.location, other.rotation_euler.x = (3, 0, 1), np.pi / 2
+    for chosen in ([one, other], [other, one], [one]):
+        select(*chosen)
+        bpy.ops.tessera.mesh_curve(edge_length=0.3, result="JOIN")
+        made = bpy.context.object
+        points = vertices(made) @ np.array(made.matrix_world)[:3, :3].T + np.array(made.matrix_world)[:3, 3]
+        low, high = ([0, 0, 0], [1, 1, 0]) if len(chosen) == 1 else ([0, 0, 0], [4, 1, 2])
+        np.testing.assert_allclose([points.min(axis=0), points.max(axis=0)], [low, high], atol=1e-6)
+        bpy.data.objects.remove(made)
+
+
+def test_a_name_leaves_room_for_the_word_mesh():
+    limit = 255 if bpy.app.version >= (5, 0) else 63
+    obj = poly_curve(SQUARE, name="ä" * limit)
+    select(obj)
+    bpy.ops.tessera.mesh_curve(edge_length=0.3)
+    assert bpy.context.object.name.endswith("ä Mesh")
+
+
+def test_limits_of_custom_arrays_are_kept():
+    obj = poly_curve(SQUARE)
+    obj["colour"], obj["words"], obj["steps"] = [0.1, 0.2, 0.3], ["a", "b"], [1, 2]
+    obj.id_properties_ui("colour").update(subtype="COLOR", min=0.0, max=1.0)
+    select(obj)
+    bpy.ops.tessera.mesh_curve(edge_length=0.3)
+    made = bpy.context.object
+    assert made.id_properties_ui("colour").as_dict()["subtype"] == "COLOR"
+    assert list(made["words"]) == ["a", "b"] and list(made["steps"]) == [1, 2]
+
+
+@pytest.mark.parametrize("exclude", [False, True])
+def test_results_go_to_the_collection_of_the_preferences_even_where_that_is_not_shown(monkeypatch, exclude):
+    monkeypatch.setattr(results, "collection_name", lambda: "Out")
+    collection = bpy.data.collections.new("Out")
+    bpy.context.scene.collection.children.link(collection)
+    bpy.context.view_layer.layer_collection.children["Out"].exclude = exclude
+    select(poly_curve(SQUARE, name="A"))
+    assert bpy.ops.tessera.mesh_curve(edge_length=0.3) == {"FINISHED"}
+    assert [obj.name for obj in collection.objects] == ["A Mesh"]
+    assert bpy.data.objects["A Mesh"].users_collection == (collection,)
