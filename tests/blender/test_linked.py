@@ -196,3 +196,17 @@ def test_two_meshes_of_one_source_are_both_meshed():
     assert bpy.ops.tessera.mesh_again() == {"FINISHED"}
     assert len(coarse.data.polygons) > counts[0] and len(fine.data.polygons) > counts[1]
     assert len(fine.data.polygons) > 3 * len(coarse.data.polygons)
+
+
+def test_each_mesh_gets_its_own_triangles_where_another_of_the_same_source_fails(square):
+    curve, fine = square
+    select(curve)
+    bpy.ops.tessera.mesh_curve(edge_length=0.5, keep_linked=True)
+    coarse = bpy.context.object
+    fine.tessera.settings.use_weight, fine.tessera.settings.weight_name = True, "nobody"
+    coarse.tessera.settings.edge_length = 0.3
+    before = vertices(fine)
+    select(fine, coarse)
+    assert bpy.ops.tessera.mesh_again() == {"FINISHED"}
+    assert np.array_equal(vertices(fine), before) and fine.tessera.n_triangles == len(fine.data.polygons)
+    assert 14 < len(coarse.data.polygons) < len(before)

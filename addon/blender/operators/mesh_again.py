@@ -42,13 +42,11 @@ class TESSERA_OT_mesh_again(Stepping, bpy.types.Operator):
 
     def write(self, context: bpy.types.Context, batch: Batch) -> None:
         """New geometry for each mesh whose source could be meshed."""
-        from .. import results
+        from .. import meshing, results
 
-        waiting = list(self._targets)
-        for meshed in batch.meshed:
-            target = next(obj for obj in waiting if obj.tessera.source == meshed.task.obj)
-            waiting.remove(target)
-            results.rewrite(target, meshed)
+        for target, outcome in zip(self._targets, batch.outcomes, strict=True):
+            if isinstance(outcome, meshing.Meshed):
+                results.rewrite(target, outcome)
 
 
 class TESSERA_OT_unlink(bpy.types.Operator):
