@@ -76,11 +76,15 @@ def _known(owner: bpy.types.bpy_struct):
     return getattr(owner, "properties", owner).bl_rna.properties
 
 
+def _is_another(owner: bpy.types.PropertyGroup, obj: bpy.types.Object) -> bool:
+    return obj != owner.id_data
+
+
 def _property(default: bool | int | float | str, shown: Shown, pointers: bool, update: Callable | None):
     """One bpy.props definition."""
     common = {"name": shown.label, "description": shown.description, "update": update}
     if pointers and shown.names == "object":
-        return bpy.props.PointerProperty(type=bpy.types.Object, **common)
+        return bpy.props.PointerProperty(type=bpy.types.Object, poll=_is_another, **common)
     if isinstance(default, str):
         if shown.choices:
             return bpy.props.EnumProperty(items=shown.choices, default=default, **common)

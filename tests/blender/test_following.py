@@ -175,3 +175,21 @@ def test_a_mesh_that_is_edited_itself_follows_when_that_ends(square, timers, mon
     bpy.context.view_layer.update()
     timers.run()
     assert right(mesh) == pytest.approx(3.0, abs=1e-5) and not mesh.tessera.message
+
+
+@pytest.mark.parametrize("how", ["itself", "each other", "a ring"])
+def test_meshes_that_size_each_other_are_not_meshed_for_ever(square, timers, how):
+    curve, mesh = square
+    meshes = [mesh]
+    for number in range({"itself": 0, "each other": 1, "a ring": 2}[how]):
+        select(circle(name=f"C{number}"))
+        bpy.ops.tessera.mesh_curve(edge_length=0.4, keep_linked=True)
+        meshes.append(bpy.context.object)
+    for each, near in zip(meshes, [*meshes[1:], mesh], strict=True):
+        each.tessera.settings.object_name, each.tessera.settings.use_object = near, True
+        follow(each)
+    timers.run()
+    move(curve, 1, 2.0)
+    timers.run()
+    assert timers.run() == [] and not any(is_draft(obj) for obj in bpy.data.objects)
+    assert right(mesh) == (1.0 if how == "itself" else 2.0)

@@ -139,9 +139,12 @@ def test_what_a_sizing_refers_to_is_followed_too(square):
     assert len(mesh.data.polygons) > 1.3 * many
 
 
-def test_a_collections_instance_is_followed_through_what_it_shows():
+@pytest.mark.parametrize("depth", [1, 2])
+def test_a_collections_instance_is_followed_through_what_it_shows(depth):
     part = poly_curve(SQUARE, name="Part")
     empty = instance_of(collection_of(part))
+    for _ in range(depth - 1):
+        empty = instance_of(collection_of(empty))
     select(empty)
     assert bpy.ops.tessera.mesh_curve(edge_length=0.2, keep_linked=True) == {"FINISHED"}
     mesh = bpy.context.object
@@ -210,3 +213,60 @@ def test_each_mesh_gets_its_own_triangles_where_another_of_the_same_source_fails
     assert bpy.ops.tessera.mesh_again() == {"FINISHED"}
     assert np.array_equal(vertices(fine), before) and fine.tessera.n_triangles == len(fine.data.polygons)
     assert 14 < len(coarse.data.polygons) < len(before)
+
+
+def linked_to(source, edge_length=0.3):
+    """A linked mesh of a source that follows it."""
+    select(source)
+    bpy.ops.tessera.mesh_curve(edge_length=edge_length, keep_linked=True)
+    bpy.context.object.tessera.automatic = True
+    return bpy.context.object
+
+
+def size_by(mesh, near):
+    """Let another object size a linked mesh."""
+    mesh.tessera.settings.object_name, mesh.tessera.settings.use_object = near, True
+
+
+def test_a_mesh_of_a_linked_mesh_follows_with_it(square):
+    curve, mesh = square
+    mesh.tessera.automatic = True
+    second = linked_to(mesh)
+    third = linked_to(second)
+    third.name = "A"  # before the others in the alphabet
+    move(curve, 1, 2.0)
+    assert [right(each) for each in (mesh, second, third)] == [2.0] * 3
+
+
+def test_the_smooth_flag_of_a_spline_is_followed(square):
+    curve, mesh = square
+    mesh.tessera.automatic = True
+    was = curve.data.splines[0].use_smooth
+    assert mesh.data.polygons[0].use_smooth == was
+    curve.data.splines[0].use_smooth = not was
+    bpy.context.view_layer.update()
+    assert mesh.data.polygons[0].use_smooth != was
+
+
+def test_what_sizes_a_mesh_and_is_gone_is_said(square):
+    curve, mesh = square
+    near = bpy.data.objects.new("Near", None)
+    bpy.context.scene.collection.objects.link(near)
+    mesh.tessera.automatic = True
+    size_by(mesh, near)
+    assert not mesh.tessera.message
+    bpy.context.scene.collection.objects.unlink(near)
+    move(curve, 1, 2.0)
+    assert right(mesh) == 1.0 and "'Near', which is in no scene" in mesh.tessera.message
+    with pytest.raises(RuntimeError, match="Mesh 'Square Mesh': By Object is 'Near', which is in no scene"):
+        bpy.ops.tessera.mesh_again()
+
+
+def test_a_mesh_that_sizes_itself_is_said(square):
+    curve, mesh = square
+    mesh.tessera.automatic = True
+    size_by(mesh, mesh)
+    move(curve, 1, 2.0)
+    assert right(mesh) == 1.0 and "is the mesh itself" in mesh.tessera.message
+    size_by(mesh, None)
+    assert right(mesh) == 2.0 and not mesh.tessera.message

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from .. import following
-from ..linked import is_draft, is_linked, linked_settings, source_is_there
+from ..linked import is_draft, is_linked, linked_settings, problem
 from ..progress import Steps
 from .stepping import Refusal, Stepping
 
@@ -33,9 +33,8 @@ class TESSERA_OT_mesh_again(Stepping, bpy.types.Operator):
 
         self._targets = _targets(context)
         for obj in self._targets:
-            if not source_is_there(obj):
-                message = "its source is in no scene. Link that into one, or undo its deletion, or unlink the mesh"
-                raise Refusal(f"Mesh '{obj.name}': {message}")
+            if trouble := problem(obj):
+                raise Refusal(f"Mesh '{obj.name}': {trouble}")
         sources = [obj.tessera.source for obj in self._targets]
         settings = [linked_settings(obj) for obj in self._targets]
         return meshing.mesh_all(sources, context.evaluated_depsgraph_get(), settings)
