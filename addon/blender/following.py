@@ -211,14 +211,20 @@ def _after_undo(scene: bpy.types.Scene, _) -> None:
 
 @persistent
 def _before_save(_path: str, _) -> None:
-    """No file has drafts."""
+    """No file has drafts, nor meshes that are still to follow."""
+    _resting.update(_wanted)
+    _wanted.clear()
     _finish()
 
 
 @persistent
 def _after_load(_path: str, _) -> None:
+    """In the window, what is out of date is meshed once Blender is idle; without one, a file stays as it was saved."""
     for names in (_wanted, _resting, _seconds, _draft_seconds):
         names.clear()
+    if has_window():
+        for obj in _following():
+            want(obj)
 
 
 def _following() -> Iterator[bpy.types.Object]:

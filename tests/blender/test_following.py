@@ -193,3 +193,33 @@ def test_meshes_that_size_each_other_are_not_meshed_for_ever(square, timers, how
     timers.run()
     assert timers.run() == [] and not any(is_draft(obj) for obj in bpy.data.objects)
     assert right(mesh) == (1.0 if how == "itself" else 2.0)
+
+
+def test_a_file_that_is_saved_at_once_has_what_follows_in_full(square, timers, tmp_path):
+    curve, mesh = square
+    select(follow(mesh))
+    bpy.ops.tessera.mesh_curve(edge_length=0.3, keep_linked=True)
+    second = follow(bpy.context.object)
+    timers.run()
+    move(curve, 1, 2.0)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "moved.blend"))
+    assert right(mesh) == right(second) == 2.0 and not is_draft(mesh) and not is_draft(second)
+
+
+@pytest.mark.parametrize("windowed", [True, False])
+def test_what_is_out_of_date_in_a_file_is_meshed_once_it_is_open_in_a_window(
+    square, timers, monkeypatch, windowed, tmp_path
+):
+    curve, mesh = square
+    follow(mesh)
+    timers.run()
+    move(curve, 1, 2.0)
+    with monkeypatch.context() as without:
+        without.setattr(following, "_finish", lambda: None)
+        bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "stale.blend"))
+    timers.due.clear()
+    monkeypatch.setattr(following, "has_window", lambda: windowed)
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "stale.blend"))
+    assert right(bpy.data.objects["Square Mesh"]) == 1.0
+    timers.run()
+    assert right(bpy.data.objects["Square Mesh"]) == (2.0 if windowed else 1.0)
