@@ -145,7 +145,8 @@ def mesh_again(obj: bpy.types.Object, draft: bool = False) -> bool:
 
     draft: faster and poorer; it stays out of date.
     """
-    from . import meshing, results  # here, so that enabling the add-on does not load the mesher
+    from .. import tessera  # here, so that enabling the add-on does not load the mesher
+    from . import meshing, results
 
     if trouble := problem(obj):
         obj.tessera.message = trouble
@@ -163,7 +164,7 @@ def mesh_again(obj: bpy.types.Object, draft: bool = False) -> bool:
         if draft:
             task = replace(task, settings=replace(settings, passes=0, smooth=max(settings.smooth, _SMOOTH)))
         results.rewrite(obj, meshing.finish(meshing.mesh_task(task)), draft)
-    except meshing.Failure as failure:
+    except (meshing.Failure, tessera.RuntimeProblem) as failure:
         obj.tessera.message = str(failure)
         return False
     return True

@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 import pytest
 
+from addon import tessera
 from addon.blender import following
 from addon.blender.properties import read_settings
 from tests.blender.drawing import SQUARE, circle, move, poly_curve, right, select, vertices
@@ -270,3 +271,18 @@ def test_a_mesh_that_sizes_itself_is_said(square):
     assert right(mesh) == 1.0 and "is the mesh itself" in mesh.tessera.message
     size_by(mesh, None)
     assert right(mesh) == 2.0 and not mesh.tessera.message
+
+
+def test_a_broken_onnxruntime_is_said_at_the_mesh(square, monkeypatch):
+    from addon.blender import meshing
+
+    curve, mesh = square
+    mesh.tessera.automatic = True
+
+    def broken(_tasks):
+        raise tessera.RuntimeProblem("onnxruntime is not installed.")
+        yield
+
+    monkeypatch.setattr(meshing, "mesh_tasks", broken)
+    move(curve, 1, 2.0)
+    assert mesh.tessera.message == "onnxruntime is not installed." and right(mesh) == 1.0
