@@ -36,7 +36,7 @@ def read_settings(owner: bpy.types.bpy_struct) -> Settings:
             continue
         value = getattr(owner, name)
         if _is_pointer(owner, name):
-            value = value.name if value else ""
+            value = _named(value)
         values[name] = math.degrees(value) if shown.unit == "angle" else value
     return Settings(**values)
 
@@ -65,6 +65,13 @@ def write_setting(settings: Settings, name: str, owner: bpy.types.bpy_struct) ->
     if table()[name].unit == "angle":
         value = math.radians(value)
     setattr(owner, name, bpy.data.objects.get(value) if _is_pointer(owner, name) else value)
+
+
+def _named(obj: bpy.types.Object | None) -> str | tuple[str, str]:
+    """As `bpy.data.objects.get` takes it: a plain name is that of this file's own object, where there is one."""
+    if obj is None:
+        return ""
+    return obj.name if obj.library is None else (obj.name, obj.library.filepath)
 
 
 def _is_pointer(owner: bpy.types.bpy_struct, name: str) -> bool:

@@ -57,13 +57,13 @@ def unnamed(settings: Settings) -> list[str]:
     return missing
 
 
-def _near_ends(name: str, depsgraph: bpy.types.Depsgraph) -> tuple[np.ndarray, np.ndarray]:
+def _near_ends(name: str | tuple[str, str], depsgraph: bpy.types.Depsgraph) -> tuple[np.ndarray, np.ndarray]:
     other = bpy.data.objects.get(name)
     if other is None:
         message = f"The sizing refers to an object, and there is none named '{name}'. Choose one."
         raise tessera.ContourError("sizing", message)
     ends = object_edges(other, depsgraph)
-    _check_finite(np.concatenate(ends), f"A place of '{name}'")
+    _check_finite(np.concatenate(ends), f"A place of '{other.name}'")
     return ends
 
 

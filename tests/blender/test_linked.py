@@ -263,6 +263,27 @@ def test_what_sizes_a_mesh_and_is_gone_is_said(square):
         bpy.ops.tessera.mesh_again()
 
 
+def test_a_librarys_object_sizes_a_mesh_also_where_the_file_has_one_of_its_name(square, tmp_path):
+    _, mesh = square
+    plain = len(mesh.data.polygons)
+    own = bpy.data.objects.new("Near", None)
+    own.location = 0.5, 0.5, 0
+    bpy.data.libraries.write(str(tmp_path / "library.blend"), {own})
+    own.location.x = 50
+    with bpy.data.libraries.load(str(tmp_path / "library.blend"), link=True) as (_, to):
+        to.objects = ["Near"]
+    (librarys,) = to.objects
+    for each in (own, librarys):
+        bpy.context.scene.collection.objects.link(each)
+    mesh.tessera.settings.object_length = 0.02
+    mesh.tessera.automatic = True
+    size_by(mesh, librarys)
+    assert len(mesh.data.polygons) > 1.5 * plain
+    size_by(mesh, own)
+    assert len(mesh.data.polygons) == plain
+    assert mesh.tessera.settings.object_name == own and librarys.library
+
+
 def test_a_mesh_that_sizes_itself_is_said(square):
     curve, mesh = square
     mesh.tessera.automatic = True
