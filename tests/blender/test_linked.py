@@ -307,3 +307,29 @@ def test_a_broken_onnxruntime_is_said_at_the_mesh(square, monkeypatch):
     monkeypatch.setattr(meshing, "mesh_tasks", broken)
     move(curve, 1, 2.0)
     assert mesh.tessera.message == "onnxruntime is not installed." and right(mesh) == 1.0
+
+
+def test_a_linked_duplicate_keeps_its_mesh(square):
+    curve, mesh = square
+    mesh.data.materials.append(bpy.data.materials.new("Red"))
+    group = mesh.vertex_groups[0].name
+    copy = mesh.copy()  # as Alt D does, with the link
+    bpy.context.scene.collection.objects.link(copy)
+    copy.tessera.settings.edge_length = 0.1
+    before, shared = vertices(copy), mesh.data
+    move(curve, 1, 2.0)
+    select(mesh)
+    assert bpy.ops.tessera.mesh_again() == {"FINISHED"}
+    assert right(mesh) == 2.0 and np.array_equal(vertices(copy), before)
+    assert [each.name for each in mesh.data.materials] == ["Red"] and mesh.vertex_groups[0].name == group
+    select(copy)
+    assert bpy.ops.tessera.mesh_again() == {"FINISHED"}
+    assert copy.data == shared and len(copy.data.polygons) > 2 * len(mesh.data.polygons)
+
+
+def test_a_mesh_with_a_fake_user_stays_the_same_mesh(square):
+    _, mesh = square
+    data = mesh.data
+    data.use_fake_user = True
+    assert bpy.ops.tessera.mesh_again() == {"FINISHED"}
+    assert mesh.data == data and data.use_fake_user and len(bpy.data.meshes) == 1
