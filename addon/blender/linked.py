@@ -65,6 +65,14 @@ def link(obj: bpy.types.Object, meshed: Meshed) -> None:
     mark_as_current(obj, meshed)
 
 
+def unlink(obj: bpy.types.Object) -> None:
+    """Make a linked mesh a plain one."""
+    note = obj.tessera
+    note.source = None
+    note.automatic = False
+    note.message = note.fingerprint = ""
+
+
 def mark_as_current(obj: bpy.types.Object, meshed: Meshed, draft: bool = False) -> None:
     """Note that a linked mesh is what is made of this now, or a draft of it."""
     obj.tessera.fingerprint = _DRAFT * draft + fingerprint(meshed.task, linked_settings(obj))

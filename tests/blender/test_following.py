@@ -223,3 +223,16 @@ def test_what_is_out_of_date_in_a_file_is_meshed_once_it_is_open_in_a_window(
     assert right(bpy.data.objects["Square Mesh"]) == 1.0
     timers.run()
     assert right(bpy.data.objects["Square Mesh"]) == (2.0 if windowed else 1.0)
+
+
+def test_a_draft_that_cannot_be_finished_is_unlinked_with_a_word_of_it(square, timers, capfd):
+    curve, mesh = square
+    follow(mesh)
+    timers.run()
+    move(curve, 1, 2.0)
+    timers.run(0.1)
+    assert is_draft(mesh)
+    move(curve, 0, 3.0)  # it crosses itself now
+    select(mesh)
+    assert bpy.ops.tessera.unlink() == {"FINISHED"} and mesh.tessera.source is None
+    assert "Mesh 'Square Mesh' stays the draft that it is: Curve 'Square', spline 1 crosses" in capfd.readouterr().out

@@ -333,3 +333,13 @@ def test_a_mesh_with_a_fake_user_stays_the_same_mesh(square):
     data.use_fake_user = True
     assert bpy.ops.tessera.mesh_again() == {"FINISHED"}
     assert mesh.data == data and data.use_fake_user and len(bpy.data.meshes) == 1
+
+
+def test_a_linked_mesh_that_is_meshed_in_place_is_linked_no_longer(square):
+    curve, mesh = square
+    mesh.tessera.automatic = True
+    assert bpy.ops.tessera.mesh_curve(edge_length=0.1, result="REPLACE") == {"FINISHED"}
+    fine = len(mesh.data.polygons)
+    assert fine > 200 and mesh.tessera.source is None and not mesh.tessera.automatic
+    move(curve, 1, 2.0)
+    assert len(mesh.data.polygons) == fine == mesh.tessera.n_triangles and right(mesh) == 1.0

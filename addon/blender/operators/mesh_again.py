@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from .. import following
-from ..linked import is_draft, is_linked, linked_settings, problem
+from ..linked import is_draft, is_linked, linked_settings, problem, unlink
 from ..progress import Steps
 from .stepping import Refusal, Stepping
 
@@ -63,11 +63,9 @@ class TESSERA_OT_unlink(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Forget it."""
         for obj in _targets(context):
-            if is_draft(obj):
-                following.mesh_again(obj)
-            obj.tessera.source = None
-            obj.tessera.automatic = False
-            obj.tessera.message = obj.tessera.fingerprint = ""
+            if is_draft(obj) and not following.mesh_again(obj):
+                self.report({"WARNING"}, f"Mesh '{obj.name}' stays the draft that it is: {obj.tessera.message}")
+            unlink(obj)
         return {"FINISHED"}
 
 
