@@ -120,6 +120,18 @@ def test_linked_meshes_and_failures_have_panels():
     assert not linked.poll(bpy.context)
 
 
+def test_another_file_has_no_failures_yet(tmp_path):
+    poly_curve(SQUARE, name="Broken")
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "other.blend"))
+    bpy.data.objects["Broken"].data.splines[0].points[0].co.x = 3.0
+    with pytest.raises(RuntimeError):
+        bpy.ops.tessera.mesh_curve()
+    failures = bpy.types.TESSERA_PT_failures
+    assert failures.poll(bpy.context)
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "other.blend"))
+    assert not failures.poll(bpy.context)
+
+
 def test_settings_that_have_no_effect_are_greyed_out():
     from addon.blender.layout import draw_settings
 
