@@ -22,7 +22,7 @@ from .outline import Outline
 from .preferences import execution
 from .progress import named
 from .reading import read_outlines
-from .settings import EDGES_ALONG, Settings
+from .settings import EDGES_ALONG, Settings, table
 from .targets import Targets, read_targets, unnamed
 from .wanted import Wanted, mesh_wanted
 from .writing import Piece
@@ -76,6 +76,7 @@ class Meshed:
 def read_task(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, settings: Settings) -> Task:
     """Read what is to be meshed. Raises Failure."""
     try:
+        _check_numbers(settings)
         if settings.result == "REPLACE":
             _check_editable(obj)
         outlines = tuple(read_outlines(obj, depsgraph))
@@ -83,6 +84,15 @@ def read_task(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, settings: S
     except tessera.ContourError as error:
         raise Failure(obj, error) from error
     return Task(obj, outlines, targets, settings)
+
+
+def _check_numbers(settings: Settings) -> None:
+    """Raise ContourError for what bounds do not keep a script from; the library itself says so of lengths."""
+    for name in ("gradation", "corner_angle"):
+        if np.isnan(getattr(settings, name)):
+            how = table()[name]
+            message = f"The {how.label} is nan; it must be a number between {how.low:g} and {how.high:g}. Give one."
+            raise tessera.ContourError("sizing", message)
 
 
 def _check_editable(obj: bpy.types.Object) -> None:

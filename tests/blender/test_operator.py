@@ -205,6 +205,13 @@ def test_a_setting_that_is_no_number_is_one_clear_report():
         bpy.ops.tessera.mesh_curve(use_curvature=True, curvature_ratio=float("nan"))
 
 
+@pytest.mark.parametrize("name", ["gradation", "corner_angle"])
+def test_a_limit_that_is_no_number_is_one_clear_report(name):
+    poly_curve(SQUARE, name="Square")
+    with pytest.raises(RuntimeError, match=r"^Error: Curve 'Square': The .* is nan; it must be a number between 1"):
+        bpy.ops.tessera.mesh_curve(**{name: float("nan")})
+
+
 def test_smoothing_and_flips_better_the_triangles():
     poly_curve(star())
     mean = []
