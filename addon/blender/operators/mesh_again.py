@@ -8,11 +8,11 @@ import bpy
 
 from .. import following
 from ..linked import is_draft, is_linked, linked_settings, problem, unlink
-from ..progress import Steps
 from .stepping import Refusal, Stepping
 
 if TYPE_CHECKING:
     from ..meshing import Batch
+    from ..settings import Settings
 
 
 class TESSERA_OT_mesh_again(Stepping, bpy.types.Operator):
@@ -27,23 +27,19 @@ class TESSERA_OT_mesh_again(Stepping, bpy.types.Operator):
         """Object Mode, with a linked mesh active."""
         return _poll(cls, context)
 
-    def steps(self, context: bpy.types.Context) -> Steps[Batch]:
-        """Mesh the sources by the settings at the meshes."""
-        from .. import meshing  # here, so that enabling the add-on does not load the mesher
-
-        self._targets = _targets(context)
-        for obj in self._targets:
+    def chosen(self, context: bpy.types.Context) -> list[tuple[bpy.types.Object, Settings]]:
+        """The sources, by the settings at the meshes."""
+        self.targets = _targets(context)
+        for obj in self.targets:
             if trouble := problem(obj):
                 raise Refusal(f"Mesh '{obj.name}': {trouble}")
-        sources = [obj.tessera.source for obj in self._targets]
-        settings = [linked_settings(obj) for obj in self._targets]
-        return meshing.mesh_all(sources, context.evaluated_depsgraph_get(), settings)
+        return [(obj.tessera.source, linked_settings(obj)) for obj in self.targets]
 
     def write(self, context: bpy.types.Context, batch: Batch) -> None:
         """New geometry for each mesh whose source could be meshed."""
         from .. import meshing, results
 
-        for target, outcome in zip(self._targets, batch.outcomes, strict=True):
+        for target, outcome in zip(self.targets, batch.outcomes, strict=True):
             if isinstance(outcome, meshing.Meshed):
                 results.rewrite(target, outcome)
 
