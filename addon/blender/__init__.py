@@ -3,9 +3,9 @@
 Only this folder imports `bpy`. The mesher is imported where it is called, so that enabling the add-on stays quick.
 """
 
-from . import command, following, linked, menus, operators, overlay, panel, preferences
+from . import command, following, linked, menus, notes, operators, overlay, panel, preferences
 
-_MODULES = (preferences, linked, following, operators, menus, overlay, panel, command)
+_MODULES = (preferences, linked, following, notes, operators, menus, overlay, panel, command)
 
 
 def register() -> None:

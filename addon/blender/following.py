@@ -14,8 +14,17 @@ from dataclasses import replace
 import bpy
 from bpy.app.handlers import persistent
 
-from .kinds import shows_collection
-from .linked import fingerprint, is_being_edited, is_draft, is_linked, linked_settings, made_of, source_is_there
+from .linked import (
+    depends_on,
+    fingerprint,
+    is_being_edited,
+    is_draft,
+    is_linked,
+    linked_settings,
+    made_of,
+    problem,
+    read_from,
+)
 
 # Meshes that take longer than this many seconds are drafted while their source changes. Where drafts take longer than
 # that, they wait, too, until it has not changed for as long as _REST.
@@ -69,9 +78,9 @@ def _catch_up() -> None:
             if not obj.tessera.automatic:
                 continue
             if not has_window() or _seconds.get(obj.name, _TOO_LONG) <= _QUICK:
-                _mesh(obj)
+                _mesh(obj, _wanted)
                 continue
-            changed = _draft_seconds.get(obj.name, 0.0) > _QUICK_DRAFT or _mesh(obj, draft=True)
+            changed = _draft_seconds.get(obj.name, 0.0) > _QUICK_DRAFT or _mesh(obj, _wanted, draft=True)
             if changed:
                 _resting.add(obj.name)
                 _forget(_finish)
@@ -88,7 +97,7 @@ def _finish() -> None:
     try:
         for obj in _each(_resting):
             if obj.tessera.automatic or is_draft(obj):
-                _mesh(obj)
+                _mesh(obj, _resting)
                 # However long it took: the first one has loaded the networks.
                 _draft_seconds.pop(obj.name, None)
                 stop_if_slow(obj, _seconds.get(obj.name, 0.0))
@@ -102,13 +111,16 @@ def _each(names: set[str]) -> Iterator[bpy.types.Object]:
     while names:
         name = min(names)
         names.remove(name)
-        obj = bpy.data.objects.get(name)
+        obj = bpy.data.objects.get((name, None))  # not a library's
         if is_linked(obj):
             yield obj
 
 
-def _mesh(obj: bpy.types.Object, draft: bool = False) -> bool:
-    """`mesh_again`, timed, without an answer to the changes that it makes itself."""
+def _mesh(obj: bpy.types.Object, names: set[str], draft: bool = False) -> bool:
+    """`mesh_again`, timed, without an answer to the changes that it makes itself.
+
+    names: gets those of the meshes that follow this one, as Blender tells of no change that is made at a change.
+    """
     global _at_work
     _at_work, since = True, time.perf_counter()
     try:
@@ -117,6 +129,7 @@ def _mesh(obj: bpy.types.Object, draft: bool = False) -> bool:
         _at_work = False
     if was_due:
         (_draft_seconds if draft else _seconds)[obj.name] = time.perf_counter() - since
+        names.update(other.name for other in _following() if _follows(other, {_key(obj)}))
     return was_due
 
 
@@ -132,10 +145,11 @@ def mesh_again(obj: bpy.types.Object, draft: bool = False) -> bool:
 
     draft: faster and poorer; it stays out of date.
     """
-    from . import meshing, results  # here, so that enabling the add-on does not load the mesher
+    from .. import tessera  # here, so that enabling the add-on does not load the mesher
+    from . import meshing, results
 
-    if not source_is_there(obj):
-        obj.tessera.message = "Its source is in no scene"
+    if trouble := problem(obj):
+        obj.tessera.message = trouble
         return False
     if is_being_edited(obj):
         obj.tessera.message = _WAITS
@@ -150,7 +164,7 @@ def mesh_again(obj: bpy.types.Object, draft: bool = False) -> bool:
         if draft:
             task = replace(task, settings=replace(settings, passes=0, smooth=max(settings.smooth, _SMOOTH)))
         results.rewrite(obj, meshing.finish(meshing.mesh_task(task)), draft)
-    except meshing.Failure as failure:
+    except (meshing.Failure, tessera.RuntimeProblem) as failure:
         obj.tessera.message = str(failure)
         return False
     return True
@@ -161,9 +175,16 @@ def _after_update(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Non
     changed = {_key(update.id.original) for update in depsgraph.updates if _matters(update)}
     if changed:
         for obj in _following():
-            near = obj.tessera.settings.object_name
-            if changed & {*_parts(obj.tessera.source), *([_key(near)] if near else [])} or _has_waited(obj):
+            if _follows(obj, changed) or _has_waited(obj):
                 want(obj)
+
+
+def _follows(obj: bpy.types.Object, changed: set[tuple[str, str]]) -> bool:
+    """Whether a linked mesh is made of something that has changed, by `_key`; what is made of the mesh does not count.
+
+    Meshes that size each other would else be meshed for ever.
+    """
+    return any(not changed.isdisjoint(_keys(part)) and not depends_on(part, obj) for part in read_from(obj))
 
 
 def _has_waited(obj: bpy.types.Object) -> bool:
@@ -171,16 +192,12 @@ def _has_waited(obj: bpy.types.Object) -> bool:
 
 
 def _key(block: bpy.types.ID) -> tuple[str, str]:
-    return block.id_type, block.name
+    return block.id_type, block.name_full
 
 
-def _parts(source: bpy.types.Object) -> Iterator[tuple[str, str]]:
-    """What the source is made of: itself, its data, and the objects of the collection that it shows, by `_key`."""
-    shown = source.instance_collection.all_objects if shows_collection(source) else ()
-    for obj in (source, *shown):
-        yield _key(obj)
-        if obj.data is not None:
-            yield _key(obj.data)
+def _keys(obj: bpy.types.Object) -> tuple[tuple[str, str], ...]:
+    """Those of an object and of its data."""
+    return (_key(obj),) if obj.data is None else (_key(obj), _key(obj.data))
 
 
 def _matters(update: bpy.types.DepsgraphUpdate) -> bool:
@@ -195,14 +212,20 @@ def _after_undo(scene: bpy.types.Scene, _) -> None:
 
 @persistent
 def _before_save(_path: str, _) -> None:
-    """No file has drafts."""
+    """No file has drafts, nor meshes that are still to follow."""
+    _resting.update(_wanted)
+    _wanted.clear()
     _finish()
 
 
 @persistent
 def _after_load(_path: str, _) -> None:
+    """In the window, what is out of date is meshed once Blender is idle; without one, a file stays as it was saved."""
     for names in (_wanted, _resting, _seconds, _draft_seconds):
         names.clear()
+    if has_window():
+        for obj in _following():
+            want(obj)
 
 
 def _following() -> Iterator[bpy.types.Object]:

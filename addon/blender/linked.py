@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
 
+from .kinds import shows_collection
 from .properties import annotations, read_settings, write_settings
 
 if TYPE_CHECKING:
@@ -63,6 +65,14 @@ def link(obj: bpy.types.Object, meshed: Meshed) -> None:
     mark_as_current(obj, meshed)
 
 
+def unlink(obj: bpy.types.Object) -> None:
+    """Make a linked mesh a plain one."""
+    note = obj.tessera
+    note.source = None
+    note.automatic = False
+    note.message = note.fingerprint = ""
+
+
 def mark_as_current(obj: bpy.types.Object, meshed: Meshed, draft: bool = False) -> None:
     """Note that a linked mesh is what is made of this now, or a draft of it."""
     obj.tessera.fingerprint = _DRAFT * draft + fingerprint(meshed.task, linked_settings(obj))
@@ -104,7 +114,8 @@ def fingerprint(task: Task, settings: Settings) -> str:
     """A word that is the same as long as what is read for a mesh, and its settings, are."""
     digest = hashlib.sha1(usedforsecurity=False)
     for outline, targets in zip(task.outlines, task.targets, strict=True):
-        arrays = [*outline.loops, outline.plane.origin, outline.plane.axes, outline.plane.metric, outline.materials]
+        arrays = [*outline.loops, outline.plane.origin, outline.plane.axes, outline.plane.metric]
+        arrays += [outline.materials, outline.smooth]
         for pair in (targets.weights, targets.near):
             arrays += pair or ()
         for array in arrays:
@@ -130,9 +141,52 @@ def is_being_edited(obj: bpy.types.Object) -> bool:
     return obj.mode != "OBJECT" or obj.data.is_editmode
 
 
-def source_is_there(obj: bpy.types.Object) -> bool:
-    """Whether a linked mesh's source is still in a scene: what refers to a deleted object keeps it in the file."""
-    return bool(obj.tessera.source.users_scene)
+def problem(obj: bpy.types.Object) -> str:
+    """Why a linked mesh cannot be meshed again, whatever the shape of its source; nothing where it can.
+
+    A deleted object is in no scene: what refers to it keeps it in the file.
+    """
+    near = _sized_by(obj)
+    if not obj.tessera.source.users_scene:
+        return "Its source is in no scene. Link that into one, undo its deletion, or unlink the mesh."
+    if near == obj:
+        return "By Object is the mesh itself. Choose another object."
+    if near is not None and not near.users_scene:
+        return f"By Object is '{near.name}', which is in no scene. Choose another object, or undo its deletion."
+    return ""
+
+
+def read_from(obj: bpy.types.Object) -> Iterator[bpy.types.Object]:
+    """What a linked mesh is made of: its source, all that this shows of collections, and the object that sizes it."""
+    seen, waiting = {obj.tessera.source}, [obj.tessera.source]
+    while waiting:
+        part = waiting.pop()
+        yield part
+        if shows_collection(part):
+            more = set(part.instance_collection.all_objects) - seen
+            seen |= more
+            waiting += more
+    near = _sized_by(obj)
+    if near is not None and near not in seen:
+        yield near
+
+
+def depends_on(obj: bpy.types.Object, other: bpy.types.Object) -> bool:
+    """Whether an object is the other, or a linked mesh that is made of it, directly or by way of others."""
+    seen, waiting = {obj}, [obj]
+    while waiting:
+        part = waiting.pop()
+        if part == other:
+            return True
+        more = set(read_from(part)) - seen if is_linked(part) else set()
+        seen |= more
+        waiting += more
+    return False
+
+
+def _sized_by(obj: bpy.types.Object) -> bpy.types.Object | None:
+    settings = obj.tessera.settings
+    return settings.object_name if settings.use_object else None
 
 
 def register() -> None:

@@ -22,7 +22,7 @@ from .outline import Outline
 from .preferences import execution
 from .progress import named
 from .reading import read_outlines
-from .settings import EDGES_ALONG, Settings
+from .settings import EDGES_ALONG, Settings, table
 from .targets import Targets, read_targets, unnamed
 from .wanted import Wanted, mesh_wanted
 from .writing import Piece
@@ -76,6 +76,7 @@ class Meshed:
 def read_task(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, settings: Settings) -> Task:
     """Read what is to be meshed. Raises Failure."""
     try:
+        _check_numbers(settings)
         if settings.result == "REPLACE":
             _check_editable(obj)
         outlines = tuple(read_outlines(obj, depsgraph))
@@ -83,6 +84,15 @@ def read_task(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, settings: S
     except tessera.ContourError as error:
         raise Failure(obj, error) from error
     return Task(obj, outlines, targets, settings)
+
+
+def _check_numbers(settings: Settings) -> None:
+    """Raise ContourError for what bounds do not keep a script from; the library itself says so of lengths."""
+    for name in ("gradation", "corner_angle"):
+        if np.isnan(getattr(settings, name)):
+            how = table()[name]
+            message = f"The {how.label} is nan; it must be a number between {how.low:g} and {how.high:g}. Give one."
+            raise tessera.ContourError("sizing", message)
 
 
 def _check_editable(obj: bpy.types.Object) -> None:
@@ -169,28 +179,38 @@ def expected_triangles(task: Task) -> float:
 
 @dataclass(frozen=True)
 class Batch:
-    """What became of several objects."""
+    """What became of several objects, in their order."""
 
-    meshed: tuple[Meshed, ...]
-    failures: tuple[Failure, ...]
+    outcomes: tuple[Meshed | Failure, ...]
+
+    @property
+    def meshed(self) -> tuple[Meshed, ...]:
+        """Of those that could be meshed."""
+        return tuple(outcome for outcome in self.outcomes if isinstance(outcome, Meshed))
+
+    @property
+    def failures(self) -> tuple[Failure, ...]:
+        """Of the others."""
+        return tuple(outcome for outcome in self.outcomes if isinstance(outcome, Failure))
 
 
 def mesh_all(objects: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph, settings: list[Settings]) -> Steps[Batch]:
     """Read all objects, then mesh a handful at a time, each by its settings; one that fails stops no other."""
-    tasks, meshed, failures = [], [], []
-    for obj, its in zip(objects, settings, strict=True):
+    tasks: list[tuple[int, Task]] = []
+    outcomes: dict[int, Meshed | Failure] = {}
+    for number, (obj, its) in enumerate(zip(objects, settings, strict=True)):
         try:
-            tasks.append(read_task(obj, depsgraph, its))
+            tasks.append((number, read_task(obj, depsgraph, its)))
         except Failure as failure:
-            failures.append(failure)
+            outcomes[number] = failure
     done = 0
-    for some in handfuls(tasks, expected_triangles):
-        name = some[0].obj.name if len(some) == 1 else f"{some[0].obj.name} and {len(some) - 1} more"
-        steps = within(named(mesh_tasks(some), name), done / len(tasks), (done + len(some)) / len(tasks))
-        for outcome in (yield from steps):
-            (failures if isinstance(outcome, Failure) else meshed).append(outcome)
-        done += len(some)
-    return Batch(tuple(meshed), tuple(failures))
+    for some in handfuls(tasks, lambda numbered: expected_triangles(numbered[1])):
+        numbers, own = zip(*some, strict=True)
+        name = own[0].obj.name if len(own) == 1 else f"{own[0].obj.name} and {len(own) - 1} more"
+        steps = within(named(mesh_tasks(own), name), done / len(tasks), (done + len(own)) / len(tasks))
+        outcomes |= zip(numbers, (yield from steps), strict=True)
+        done += len(own)
+    return Batch(tuple(outcomes[number] for number in range(len(objects))))
 
 
 def automatic_edge_length(outlines: tuple[Outline, ...], settings: Settings) -> float:

@@ -6,6 +6,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import bpy
+from bpy.app.handlers import persistent
+
 if TYPE_CHECKING:
     from .failures import Failure
 
@@ -27,3 +30,19 @@ last: list[Noted] = []
 def note(failures: Iterable[Failure]) -> None:
     """Keep these failures in place of those of the last use."""
     last[:] = [Noted(failure.obj, str(failure), failure.spline, failure.place) for failure in failures]
+
+
+@persistent
+def _after_load(_path: str, _) -> None:
+    """Another file may well have objects of the same names."""
+    last.clear()
+
+
+def register() -> None:
+    """Forget what failed in a file when another is opened."""
+    bpy.app.handlers.load_post.append(_after_load)
+
+
+def unregister() -> None:
+    """Undo `register`."""
+    bpy.app.handlers.load_post.remove(_after_load)

@@ -71,17 +71,18 @@ def _draw() -> None:
 
 def _batch(obj: bpy.types.Object, shader: gpu.types.GPUShader, depsgraph: bpy.types.Depsgraph):
     """What is drawn of an object, kept until it changes; None without a quality."""
-    if obj.name not in _batches:
+    key = obj.name_full  # a library may have an object of the same name
+    if key not in _batches:
         made = coloured_triangles(obj.evaluated_get(depsgraph).data)
-        _batches[obj.name] = made and batch_for_shader(shader, "TRIS", {"pos": made[0], "color": made[1]})
-    return _batches[obj.name]
+        _batches[key] = made and batch_for_shader(shader, "TRIS", {"pos": made[0], "color": made[1]})
+    return _batches[key]
 
 
 @persistent
 def _forget_changed(_scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
     for update in depsgraph.updates:
         if update.is_updated_geometry:
-            _batches.pop(update.id.name, None)
+            _batches.pop(update.id.name_full, None)
 
 
 @persistent

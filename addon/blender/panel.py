@@ -6,7 +6,7 @@ import bpy
 
 from . import notes, overlay
 from .layout import draw_failures, draw_settings, draw_text
-from .linked import BINS, is_linked, source_is_there
+from .linked import BINS, is_linked, problem
 
 _MOST_FAILURES = 5
 _LINE = 42  # characters that fit the sidebar
@@ -57,10 +57,9 @@ class TESSERA_PT_linked(bpy.types.Panel):
         row = layout.row()
         row.enabled = False
         row.prop(note, "source")
-        if not source_is_there(context.object):
-            layout.label(text="The source is in no scene", icon="ERROR")
-        if note.message:
-            draw_text(layout.box(), note.message, _LINE)
+        for trouble in dict.fromkeys((problem(context.object), note.message)):
+            if trouble:
+                draw_text(layout.box(), trouble, _LINE)
         draw_settings(layout, note.settings, source=note.source, without=("result",))
 
 

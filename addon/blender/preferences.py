@@ -11,9 +11,11 @@ PACKAGE = __package__.removesuffix(".addon.blender")
 
 
 def _providers(_self, _context, text: str) -> list[str]:
-    """The providers of the onnxruntime that is installed."""
-    import onnxruntime
-
+    """The providers of the onnxruntime that is installed; none of one that is broken, which meshing says."""
+    try:
+        import onnxruntime
+    except ImportError:
+        return []
     return [name for name in onnxruntime.get_available_providers() if text.lower() in name.lower()]
 
 

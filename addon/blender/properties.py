@@ -36,7 +36,7 @@ def read_settings(owner: bpy.types.bpy_struct) -> Settings:
             continue
         value = getattr(owner, name)
         if _is_pointer(owner, name):
-            value = value.name if value else ""
+            value = _named(value)
         values[name] = math.degrees(value) if shown.unit == "angle" else value
     return Settings(**values)
 
@@ -67,6 +67,13 @@ def write_setting(settings: Settings, name: str, owner: bpy.types.bpy_struct) ->
     setattr(owner, name, bpy.data.objects.get(value) if _is_pointer(owner, name) else value)
 
 
+def _named(obj: bpy.types.Object | None) -> str | tuple[str, str]:
+    """As `bpy.data.objects.get` takes it: a plain name is that of this file's own object, where there is one."""
+    if obj is None:
+        return ""
+    return obj.name if obj.library is None else (obj.name, obj.library.filepath)
+
+
 def _is_pointer(owner: bpy.types.bpy_struct, name: str) -> bool:
     return _known(owner)[name].type == "POINTER"
 
@@ -76,11 +83,15 @@ def _known(owner: bpy.types.bpy_struct):
     return getattr(owner, "properties", owner).bl_rna.properties
 
 
+def _is_another(owner: bpy.types.PropertyGroup, obj: bpy.types.Object) -> bool:
+    return obj != owner.id_data
+
+
 def _property(default: bool | int | float | str, shown: Shown, pointers: bool, update: Callable | None):
     """One bpy.props definition."""
     common = {"name": shown.label, "description": shown.description, "update": update}
     if pointers and shown.names == "object":
-        return bpy.props.PointerProperty(type=bpy.types.Object, **common)
+        return bpy.props.PointerProperty(type=bpy.types.Object, poll=_is_another, **common)
     if isinstance(default, str):
         if shown.choices:
             return bpy.props.EnumProperty(items=shown.choices, default=default, **common)

@@ -22,8 +22,9 @@ class Shown:
     """How one setting is shown. group: the part of the panel; applies: whether it has an effect, given all of them.
 
     choices: (identifier, label, description) each; low, high: bounds, soft_high: where a slider ends; unit: "length"
-    (world units) or "angle" (degrees), else the number is plain; names: "object" or "weight", if it is the name of one.
-    remembered: whether the next use of the operator starts with it.
+    (world units) or "angle" (degrees), else the number is plain; names: "object" or "weight", if it is the name of one;
+    a library's object may be a pair of its name and the library's path. remembered: whether the next use of the
+    operator starts with it.
     """
 
     label: str
@@ -157,7 +158,7 @@ class Settings:
         "sizing",
         remembered=False,
     )
-    object_name: str = _setting(
+    object_name: str | tuple[str, str] = _setting(
         "",
         "Object",
         "An empty, mesh, curve or grease-pencil object; what counts are its vertices, projected onto the outline's "

@@ -58,7 +58,7 @@ def unnamed(settings: Settings) -> list[str]:
     return missing
 
 
-def _near_ends(name: str, depsgraph: bpy.types.Depsgraph) -> tuple[np.ndarray, np.ndarray]:
+def _near_ends(name: str | tuple[str, str], depsgraph: bpy.types.Depsgraph) -> tuple[np.ndarray, np.ndarray]:
     other = bpy.data.objects.get(name)
     if other is None:
         message = f"The sizing refers to an object, and there is none named '{name}'. Choose one."
@@ -66,8 +66,10 @@ def _near_ends(name: str, depsgraph: bpy.types.Depsgraph) -> tuple[np.ndarray, n
     try:
         ends = object_edges(other, depsgraph)
     except OutlineError as error:
-        raise tessera.ContourError("sizing", f"Of the object '{name}' that the sizing refers to: {error}") from error
-    _check_finite(np.concatenate(ends), f"A place of '{name}'")
+        raise tessera.ContourError(
+            "sizing", f"Of the object '{other.name}' that the sizing refers to: {error}"
+        ) from error
+    _check_finite(np.concatenate(ends), f"A place of '{other.name}'")
     return ends
 
 

@@ -77,8 +77,10 @@ def write_again(target: bpy.types.Object, pieces: Sequence[Piece]) -> None:
     """New geometry into a mesh object: its transform, modifiers, custom properties, and materials stay.
 
     So do vertex groups, which modifiers refer to, but without a vertex, as all are new; shape keys go with the old
-    ones. Where it has no material, it gets those of the pieces.
+    ones. Where it has no material, it gets those of the pieces. Other objects of the same mesh keep that as it was.
     """
+    if target.data.users - target.data.use_fake_user > 1:
+        target.data = target.data.copy()
     geometry, groups = join(pieces), [group.name for group in target.vertex_groups]
     if target.data.shape_keys is not None:
         target.shape_key_clear()

@@ -175,3 +175,64 @@ def test_a_mesh_that_is_edited_itself_follows_when_that_ends(square, timers, mon
     bpy.context.view_layer.update()
     timers.run()
     assert right(mesh) == pytest.approx(3.0, abs=1e-5) and not mesh.tessera.message
+
+
+@pytest.mark.parametrize("how", ["itself", "each other", "a ring"])
+def test_meshes_that_size_each_other_are_not_meshed_for_ever(square, timers, how):
+    curve, mesh = square
+    meshes = [mesh]
+    for number in range({"itself": 0, "each other": 1, "a ring": 2}[how]):
+        select(circle(name=f"C{number}"))
+        bpy.ops.tessera.mesh_curve(edge_length=0.4, keep_linked=True)
+        meshes.append(bpy.context.object)
+    for each, near in zip(meshes, [*meshes[1:], mesh], strict=True):
+        each.tessera.settings.object_name, each.tessera.settings.use_object = near, True
+        follow(each)
+    timers.run()
+    move(curve, 1, 2.0)
+    timers.run()
+    assert timers.run() == [] and not any(is_draft(obj) for obj in bpy.data.objects)
+    assert right(mesh) == (1.0 if how == "itself" else 2.0)
+
+
+def test_a_file_that_is_saved_at_once_has_what_follows_in_full(square, timers, tmp_path):
+    curve, mesh = square
+    select(follow(mesh))
+    bpy.ops.tessera.mesh_curve(edge_length=0.3, keep_linked=True)
+    second = follow(bpy.context.object)
+    timers.run()
+    move(curve, 1, 2.0)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "moved.blend"))
+    assert right(mesh) == right(second) == 2.0 and not is_draft(mesh) and not is_draft(second)
+
+
+@pytest.mark.parametrize("windowed", [True, False])
+def test_what_is_out_of_date_in_a_file_is_meshed_once_it_is_open_in_a_window(
+    square, timers, monkeypatch, windowed, tmp_path
+):
+    curve, mesh = square
+    follow(mesh)
+    timers.run()
+    move(curve, 1, 2.0)
+    with monkeypatch.context() as without:
+        without.setattr(following, "_finish", lambda: None)
+        bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "stale.blend"))
+    timers.due.clear()
+    monkeypatch.setattr(following, "has_window", lambda: windowed)
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "stale.blend"))
+    assert right(bpy.data.objects["Square Mesh"]) == 1.0
+    timers.run()
+    assert right(bpy.data.objects["Square Mesh"]) == (2.0 if windowed else 1.0)
+
+
+def test_a_draft_that_cannot_be_finished_is_unlinked_with_a_word_of_it(square, timers, capfd):
+    curve, mesh = square
+    follow(mesh)
+    timers.run()
+    move(curve, 1, 2.0)
+    timers.run(0.1)
+    assert is_draft(mesh)
+    move(curve, 0, 3.0)  # it crosses itself now
+    select(mesh)
+    assert bpy.ops.tessera.unlink() == {"FINISHED"} and mesh.tessera.source is None
+    assert "Mesh 'Square Mesh' stays the draft that it is: Curve 'Square', spline 1 crosses" in capfd.readouterr().out

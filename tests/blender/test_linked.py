@@ -4,6 +4,7 @@ import bpy
 import numpy as np
 import pytest
 
+from addon import tessera
 from addon.blender import following
 from addon.blender.properties import read_settings
 from tests.blender.drawing import SQUARE, circle, move, poly_curve, right, select, vertices
@@ -139,9 +140,12 @@ def test_what_a_sizing_refers_to_is_followed_too(square):
     assert len(mesh.data.polygons) > 1.3 * many
 
 
-def test_a_collections_instance_is_followed_through_what_it_shows():
+@pytest.mark.parametrize("depth", [1, 2])
+def test_a_collections_instance_is_followed_through_what_it_shows(depth):
     part = poly_curve(SQUARE, name="Part")
     empty = instance_of(collection_of(part))
+    for _ in range(depth - 1):
+        empty = instance_of(collection_of(empty))
     select(empty)
     assert bpy.ops.tessera.mesh_curve(edge_length=0.2, keep_linked=True) == {"FINISHED"}
     mesh = bpy.context.object
@@ -196,3 +200,146 @@ def test_two_meshes_of_one_source_are_both_meshed():
     assert bpy.ops.tessera.mesh_again() == {"FINISHED"}
     assert len(coarse.data.polygons) > counts[0] and len(fine.data.polygons) > counts[1]
     assert len(fine.data.polygons) > 3 * len(coarse.data.polygons)
+
+
+def test_each_mesh_gets_its_own_triangles_where_another_of_the_same_source_fails(square):
+    curve, fine = square
+    select(curve)
+    bpy.ops.tessera.mesh_curve(edge_length=0.5, keep_linked=True)
+    coarse = bpy.context.object
+    fine.tessera.settings.use_weight, fine.tessera.settings.weight_name = True, "nobody"
+    coarse.tessera.settings.edge_length = 0.3
+    before = vertices(fine)
+    select(fine, coarse)
+    assert bpy.ops.tessera.mesh_again() == {"FINISHED"}
+    assert np.array_equal(vertices(fine), before) and fine.tessera.n_triangles == len(fine.data.polygons)
+    assert 14 < len(coarse.data.polygons) < len(before)
+
+
+def linked_to(source, edge_length=0.3):
+    """A linked mesh of a source that follows it."""
+    select(source)
+    bpy.ops.tessera.mesh_curve(edge_length=edge_length, keep_linked=True)
+    bpy.context.object.tessera.automatic = True
+    return bpy.context.object
+
+
+def size_by(mesh, near):
+    """Let another object size a linked mesh."""
+    mesh.tessera.settings.object_name, mesh.tessera.settings.use_object = near, True
+
+
+def test_a_mesh_of_a_linked_mesh_follows_with_it(square):
+    curve, mesh = square
+    mesh.tessera.automatic = True
+    second = linked_to(mesh)
+    third = linked_to(second)
+    third.name = "A"  # before the others in the alphabet
+    move(curve, 1, 2.0)
+    assert [right(each) for each in (mesh, second, third)] == [2.0] * 3
+
+
+def test_the_smooth_flag_of_a_spline_is_followed(square):
+    curve, mesh = square
+    mesh.tessera.automatic = True
+    was = curve.data.splines[0].use_smooth
+    assert mesh.data.polygons[0].use_smooth == was
+    curve.data.splines[0].use_smooth = not was
+    bpy.context.view_layer.update()
+    assert mesh.data.polygons[0].use_smooth != was
+
+
+def test_what_sizes_a_mesh_and_is_gone_is_said(square):
+    curve, mesh = square
+    near = bpy.data.objects.new("Near", None)
+    bpy.context.scene.collection.objects.link(near)
+    mesh.tessera.automatic = True
+    size_by(mesh, near)
+    assert not mesh.tessera.message
+    bpy.context.scene.collection.objects.unlink(near)
+    move(curve, 1, 2.0)
+    assert right(mesh) == 1.0 and "'Near', which is in no scene" in mesh.tessera.message
+    with pytest.raises(RuntimeError, match="Mesh 'Square Mesh': By Object is 'Near', which is in no scene"):
+        bpy.ops.tessera.mesh_again()
+
+
+def test_a_librarys_object_sizes_a_mesh_also_where_the_file_has_one_of_its_name(square, tmp_path):
+    _, mesh = square
+    plain = len(mesh.data.polygons)
+    own = bpy.data.objects.new("Near", None)
+    own.location = 0.5, 0.5, 0
+    bpy.data.libraries.write(str(tmp_path / "library.blend"), {own})
+    own.location.x = 50
+    with bpy.data.libraries.load(str(tmp_path / "library.blend"), link=True) as (_, to):
+        to.objects = ["Near"]
+    (librarys,) = to.objects
+    for each in (own, librarys):
+        bpy.context.scene.collection.objects.link(each)
+    mesh.tessera.settings.object_length = 0.02
+    mesh.tessera.automatic = True
+    size_by(mesh, librarys)
+    assert len(mesh.data.polygons) > 1.5 * plain
+    size_by(mesh, own)
+    assert len(mesh.data.polygons) == plain
+    assert mesh.tessera.settings.object_name == own and librarys.library
+
+
+def test_a_mesh_that_sizes_itself_is_said(square):
+    curve, mesh = square
+    mesh.tessera.automatic = True
+    size_by(mesh, mesh)
+    move(curve, 1, 2.0)
+    assert right(mesh) == 1.0 and "is the mesh itself" in mesh.tessera.message
+    size_by(mesh, None)
+    assert right(mesh) == 2.0 and not mesh.tessera.message
+
+
+def test_a_broken_onnxruntime_is_said_at_the_mesh(square, monkeypatch):
+    from addon.blender import meshing
+
+    curve, mesh = square
+    mesh.tessera.automatic = True
+
+    def broken(_tasks):
+        raise tessera.RuntimeProblem("onnxruntime is not installed.")
+        yield
+
+    monkeypatch.setattr(meshing, "mesh_tasks", broken)
+    move(curve, 1, 2.0)
+    assert mesh.tessera.message == "onnxruntime is not installed." and right(mesh) == 1.0
+
+
+def test_a_linked_duplicate_keeps_its_mesh(square):
+    curve, mesh = square
+    mesh.data.materials.append(bpy.data.materials.new("Red"))
+    group = mesh.vertex_groups[0].name
+    copy = mesh.copy()  # as Alt D does, with the link
+    bpy.context.scene.collection.objects.link(copy)
+    copy.tessera.settings.edge_length = 0.1
+    before, shared = vertices(copy), mesh.data
+    move(curve, 1, 2.0)
+    select(mesh)
+    assert bpy.ops.tessera.mesh_again() == {"FINISHED"}
+    assert right(mesh) == 2.0 and np.array_equal(vertices(copy), before)
+    assert [each.name for each in mesh.data.materials] == ["Red"] and mesh.vertex_groups[0].name == group
+    select(copy)
+    assert bpy.ops.tessera.mesh_again() == {"FINISHED"}
+    assert copy.data == shared and len(copy.data.polygons) > 2 * len(mesh.data.polygons)
+
+
+def test_a_mesh_with_a_fake_user_stays_the_same_mesh(square):
+    _, mesh = square
+    data = mesh.data
+    data.use_fake_user = True
+    assert bpy.ops.tessera.mesh_again() == {"FINISHED"}
+    assert mesh.data == data and data.use_fake_user and len(bpy.data.meshes) == 1
+
+
+def test_a_linked_mesh_that_is_meshed_in_place_is_linked_no_longer(square):
+    curve, mesh = square
+    mesh.tessera.automatic = True
+    assert bpy.ops.tessera.mesh_curve(edge_length=0.1, result="REPLACE") == {"FINISHED"}
+    fine = len(mesh.data.polygons)
+    assert fine > 200 and mesh.tessera.source is None and not mesh.tessera.automatic
+    move(curve, 1, 2.0)
+    assert len(mesh.data.polygons) == fine == mesh.tessera.n_triangles and right(mesh) == 1.0

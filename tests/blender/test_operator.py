@@ -1,10 +1,14 @@
 """The operators' ways: F9, undo, cancelling, batches, failures that change nothing, and what settings do."""
 
+from unittest.mock import Mock
+
 import bpy
 import numpy as np
 import pytest
 
+from addon import tessera
 from addon.blender import notes
+from addon.blender.operators.stepping import Stepping
 from addon.blender.settings import Settings
 from addon.tessera.quality import element_quality
 from tests.blender.drawing import SQUARE, circle, poly_curve, select, star, text, triangles, vertices
@@ -204,6 +208,13 @@ def test_a_setting_that_is_no_number_is_one_clear_report():
     poly_curve(SQUARE, name="Square")
     with pytest.raises(RuntimeError, match=r"^Error: Curve 'Square': .*must be a positive number"):
         bpy.ops.tessera.mesh_curve(use_curvature=True, curvature_ratio=float("nan"))
+
+
+@pytest.mark.parametrize("name", ["gradation", "corner_angle"])
+def test_a_limit_that_is_no_number_is_one_clear_report(name):
+    poly_curve(SQUARE, name="Square")
+    with pytest.raises(RuntimeError, match=r"^Error: Curve 'Square': The .* is nan; it must be a number between 1"):
+        bpy.ops.tessera.mesh_curve(**{name: float("nan")})
 
 
 def test_smoothing_and_flips_better_the_triangles():
@@ -421,6 +432,51 @@ def test_a_handful_is_of_as_many_as_are_worth_it_and_all_come_in_their_order():
     handfuls = list(meshing.handfuls(iter(sizes), float))
     assert handfuls == [[10, 3000], [2000], [9000], [1, 1, 1]]
     assert list(meshing.handfuls([], float)) == []
+
+
+# -- what is wrong with the surroundings --
+
+
+@pytest.mark.parametrize("kind", [tessera.RuntimeProblem, ImportError])
+def test_only_what_is_wrong_with_onnxruntime_is_said_without_a_traceback(monkeypatch, kind):
+    from addon.blender import meshing
+
+    def broken(_tasks):
+        raise kind("cannot load it")
+        yield
+
+    monkeypatch.setattr(meshing, "mesh_tasks", broken)
+    circle()
+    with pytest.raises(RuntimeError, match="cannot load it") as error:
+        bpy.ops.tessera.mesh_curve()
+    assert ("Traceback" in str(error.value)) == (kind is ImportError)
+
+
+@pytest.mark.parametrize("how", ["removed", "deleted", "edited"])
+def test_an_object_that_goes_while_it_is_meshed_in_another_window_is_said(how):
+    class InWindow(Stepping):
+        bl_label, said = "Mesh", ()
+
+        def chosen(self, context):
+            return [(context.object, Settings(edge_length=0.02))]
+
+        def report(self, _kind, sentence):
+            self.said += (sentence,)
+
+    anything = Mock()
+    context = Mock(object=circle(), evaluated_depsgraph_get=bpy.context.evaluated_depsgraph_get)
+    operator = InWindow()
+    operator._steps, operator._timer = operator.steps(context), anything
+    next(operator._steps)
+    if how == "removed":
+        bpy.data.objects.remove(context.object)
+    elif how == "deleted":
+        bpy.context.scene["still"] = context.object  # as a linked mesh refers to its source
+        bpy.ops.object.delete()
+    else:
+        bpy.ops.object.mode_set(mode="EDIT")
+    assert operator.modal(context, Mock(type="TIMER")) == {"CANCELLED"}
+    assert operator.said[0].startswith("'Circle' was deleted or undone in another window, or is in another mode")
 
 
 # -- cancelling; the window's own way is tested in test_window.py --

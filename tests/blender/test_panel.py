@@ -1,5 +1,6 @@
 """Menus, sidebar, preferences and overlay, as far as they are there without a window; test_window.py looks at them."""
 
+import sys
 from dataclasses import fields
 from itertools import pairwise
 
@@ -120,6 +121,18 @@ def test_linked_meshes_and_failures_have_panels():
     assert not linked.poll(bpy.context)
 
 
+def test_another_file_has_no_failures_yet(tmp_path):
+    poly_curve(SQUARE, name="Broken")
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "other.blend"))
+    bpy.data.objects["Broken"].data.splines[0].points[0].co.x = 3.0
+    with pytest.raises(RuntimeError):
+        bpy.ops.tessera.mesh_curve()
+    failures = bpy.types.TESSERA_PT_failures
+    assert failures.poll(bpy.context)
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "other.blend"))
+    assert not failures.poll(bpy.context)
+
+
 def test_settings_that_have_no_effect_are_greyed_out():
     from addon.blender.layout import draw_settings
 
@@ -181,6 +194,27 @@ def test_the_overlay_has_a_colour_for_each_triangle_by_its_quality():
     quality = np.repeat(element_quality(vertices(made)[:, :2], triangles(made)), 3)
     plain = overlay.coloured_triangles(made.data)
     assert np.allclose(plain[1], overlay.colours(quality), atol=1e-3)
+
+
+def test_a_librarys_mesh_has_an_overlay_of_its_own(tmp_path, monkeypatch):
+    monkeypatch.setattr(overlay, "batch_for_shader", lambda _shader, _kind, content: len(content["pos"]))
+    circle()
+    bpy.ops.tessera.mesh_curve(edge_length=0.3)
+    own = bpy.context.object
+    bpy.data.libraries.write(str(tmp_path / "library.blend"), {own})
+    bpy.ops.tessera.mesh_curve(edge_length=0.1, result="REPLACE")
+    with bpy.data.libraries.load(str(tmp_path / "library.blend"), link=True) as (_, to):
+        to.objects = [own.name]
+    bpy.context.scene.collection.objects.link(to.objects[0])
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    for obj in (own, to.objects[0]):
+        assert overlay._batch(obj, None, depsgraph) == 3 * len(obj.data.polygons)
+
+
+def test_a_broken_onnxruntime_offers_no_providers(monkeypatch):
+    assert "CPUExecutionProvider" in preferences._providers(None, None, "cpu")
+    monkeypatch.setitem(sys.modules, "onnxruntime", None)
+    assert preferences._providers(None, None, "cpu") == []
 
 
 def test_a_mesh_of_another_kind_has_no_overlay():

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import bpy
 
 from .. import following
-from ..linked import is_draft, is_linked, linked_settings, source_is_there
-from ..progress import Steps
+from ..linked import is_draft, is_linked, linked_settings, problem, unlink
 from .stepping import Refusal, Stepping
 
 if TYPE_CHECKING:
     from ..meshing import Batch
+    from ..settings import Settings
 
 
 class TESSERA_OT_mesh_again(Stepping, bpy.types.Operator):
@@ -27,28 +27,21 @@ class TESSERA_OT_mesh_again(Stepping, bpy.types.Operator):
         """Object Mode, with a linked mesh active."""
         return _poll(cls, context)
 
-    def steps(self, context: bpy.types.Context) -> Steps[Batch]:
-        """Mesh the sources by the settings at the meshes."""
-        from .. import meshing  # here, so that enabling the add-on does not load the mesher
-
-        self._targets = _targets(context)
-        for obj in self._targets:
-            if not source_is_there(obj):
-                message = "its source is in no scene. Link that into one, or undo its deletion, or unlink the mesh"
-                raise Refusal(f"Mesh '{obj.name}': {message}")
-        sources = [obj.tessera.source for obj in self._targets]
-        settings = [linked_settings(obj) for obj in self._targets]
-        return meshing.mesh_all(sources, context.evaluated_depsgraph_get(), settings)
+    def chosen(self, context: bpy.types.Context) -> list[tuple[bpy.types.Object, Settings]]:
+        """The sources, by the settings at the meshes."""
+        self.targets = _targets(context)
+        for obj in self.targets:
+            if trouble := problem(obj):
+                raise Refusal(f"Mesh '{obj.name}': {trouble}")
+        return [(obj.tessera.source, linked_settings(obj)) for obj in self.targets]
 
     def write(self, context: bpy.types.Context, batch: Batch) -> None:
         """New geometry for each mesh whose source could be meshed."""
-        from .. import results
+        from .. import meshing, results
 
-        waiting = list(self._targets)
-        for meshed in batch.meshed:
-            target = next(obj for obj in waiting if obj.tessera.source == meshed.task.obj)
-            waiting.remove(target)
-            results.rewrite(target, meshed)
+        for target, outcome in zip(self.targets, batch.outcomes, strict=True):
+            if isinstance(outcome, meshing.Meshed):
+                results.rewrite(target, outcome)
 
 
 class TESSERA_OT_unlink(bpy.types.Operator):
@@ -66,11 +59,9 @@ class TESSERA_OT_unlink(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Forget it."""
         for obj in _targets(context):
-            if is_draft(obj):
-                following.mesh_again(obj)
-            obj.tessera.source = None
-            obj.tessera.automatic = False
-            obj.tessera.message = obj.tessera.fingerprint = ""
+            if is_draft(obj) and not following.mesh_again(obj):
+                self.report({"WARNING"}, f"Mesh '{obj.name}' stays the draft that it is: {obj.tessera.message}")
+            unlink(obj)
         return {"FINISHED"}
 
 

@@ -8,13 +8,14 @@ import bpy
 
 from ..kinds import is_readable
 from ..layout import draw_settings
+from ..linked import is_linked, unlink
 from ..preferences import default_settings
-from ..progress import Steps
 from ..properties import annotations, read_settings, start_with
 from .stepping import Refusal, Stepping
 
 if TYPE_CHECKING:
     from ..meshing import Batch
+    from ..settings import Settings
 
 _MODES = frozenset({"OBJECT", "EDIT_CURVE", "EDIT_CURVES", "EDIT_TEXT", "EDIT_GREASE_PENCIL", "EDIT_GPENCIL"})
 
@@ -40,15 +41,13 @@ class TESSERA_OT_mesh_curve(Stepping, bpy.types.Operator):
         start_with(default_settings(), self)
         return super().invoke(context, event)
 
-    def steps(self, context: bpy.types.Context) -> Steps[Batch]:
-        """Mesh what is selected, or what is in Edit Mode."""
-        from .. import meshing  # here, so that enabling the add-on does not load the mesher
-
+    def chosen(self, context: bpy.types.Context) -> list[tuple[bpy.types.Object, Settings]]:
+        """What is selected, or what is in Edit Mode."""
         objects = [obj for obj in _objects(context) if is_readable(obj)]
         if not objects:
             raise Refusal("Nothing that can be meshed is selected. Select curves, texts, strokes or flat meshes")
         settings = read_settings(self)
-        return meshing.mesh_all(objects, context.evaluated_depsgraph_get(), [settings] * len(objects))
+        return [(obj, settings) for obj in objects]
 
     def write(self, context: bpy.types.Context, batch: Batch) -> None:
         """Make the meshes, and select them in place of their sources."""
@@ -61,6 +60,9 @@ class TESSERA_OT_mesh_curve(Stepping, bpy.types.Operator):
             bpy.ops.object.mode_set(mode="OBJECT")
         made = results.write_results(list(batch.meshed))
         replaced = read_settings(self).result == "REPLACE"
+        for obj in made if replaced else ():
+            if is_linked(obj):
+                unlink(obj)  # else it would be thrown away when its source changes
         results.select(context, made, [] if replaced else sources, active)
         if len(batch.meshed) == 1:
             # So that Adjust Last Operation starts from a length, and not from 0.

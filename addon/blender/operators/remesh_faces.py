@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ..layout import draw_settings
-from ..progress import Steps
 from ..properties import annotations, read_settings, start_with
 from ..settings import Settings
 from .stepping import Refusal, Stepping
@@ -37,15 +36,13 @@ class TESSERA_OT_remesh_faces(Stepping, bpy.types.Operator):
         start_with(Settings(), self)
         return super().invoke(context, event)
 
-    def steps(self, context: bpy.types.Context) -> Steps[Batch]:
-        """Mesh what is selected."""
-        from .. import meshing  # here, so that enabling the add-on does not load the mesher
-
+    def chosen(self, context: bpy.types.Context) -> list[tuple[bpy.types.Object, Settings]]:
+        """The meshes in which something is selected."""
         objects = [obj for obj in context.objects_in_mode_unique_data if obj.data.total_vert_sel]
         if not objects:
             raise Refusal("Nothing is selected. Select flat faces, or the edges of a closed flat loop")
         settings = read_settings(self)
-        return meshing.mesh_all(objects, context.evaluated_depsgraph_get(), [settings] * len(objects))
+        return [(obj, settings) for obj in objects]
 
     def write(self, context: bpy.types.Context, batch: Batch) -> None:
         """Replace the selected parts."""

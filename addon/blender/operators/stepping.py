@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import bpy
@@ -12,6 +13,7 @@ from ..progress import Done, Steps, advance
 
 if TYPE_CHECKING:
     from ..meshing import Batch
+    from ..settings import Settings
 
 # Work of less than this is done at once; seconds.
 PATIENCE = 0.5
@@ -25,26 +27,42 @@ class Refusal(Exception):
     """Why nothing can be meshed at all, in the words that the user sees."""
 
 
-# An onnxruntime that is broken or too old is an ImportError, with a message for the user.
-_REFUSALS = Refusal, ImportError
+def _refusals() -> tuple[type[Exception], ...]:
+    """What has a message for the user: also an onnxruntime that is broken or too old."""
+    from ...tessera import RuntimeProblem  # here, so that enabling the add-on does not load the mesher
+
+    return Refusal, RuntimeProblem
 
 
 class Stepping:
-    """Of an operator: `steps` meshes without a change to the scene, `write` puts what was meshed into it."""
+    """Of an operator: what is `chosen` is meshed without a change to the scene, `write` puts that into it.
 
-    def steps(self, context: bpy.types.Context) -> Steps[Batch]:
-        """What is to be done. Raises Refusal."""
+    targets: the objects besides the chosen ones that `write` changes.
+    """
+
+    targets: Sequence[bpy.types.Object] = ()
+
+    def chosen(self, context: bpy.types.Context) -> list[tuple[bpy.types.Object, Settings]]:
+        """What is to be meshed, each by its settings. Raises Refusal."""
         raise NotImplementedError
 
     def write(self, context: bpy.types.Context, batch: Batch) -> None:
         """Change the scene; called once something was meshed."""
         raise NotImplementedError
 
+    def steps(self, context: bpy.types.Context) -> Steps[Batch]:
+        """What is to be done. Raises Refusal."""
+        from .. import meshing  # here, so that enabling the add-on does not load the mesher
+
+        objects, settings = map(list, zip(*self.chosen(context), strict=True))
+        self._needed = [(obj, obj.name, obj.mode) for obj in (*objects, *self.targets)]
+        return meshing.mesh_all(objects, context.evaluated_depsgraph_get(), settings)
+
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Mesh everything, and only then change the scene."""
         try:
             batch = _block(context, self.steps(context))
-        except _REFUSALS as refusal:
+        except _refusals() as refusal:
             self.report({"ERROR"}, str(refusal))
             return {"CANCELLED"}
         return self._end(context, batch, in_window=False)
@@ -56,7 +74,7 @@ class Stepping:
         try:
             self._steps = self.steps(context)
             outcome = advance(self._steps, PATIENCE)
-        except _REFUSALS as refusal:
+        except _refusals() as refusal:
             self.report({"ERROR"}, str(refusal))
             return {"CANCELLED"}
         if isinstance(outcome, Done):
@@ -69,7 +87,10 @@ class Stepping:
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """A slice at each timer's event; Esc ends it. Nothing else gets through, so that the scene stays as read."""
+        """A slice at each timer's event; Esc ends it. Nothing else gets through, so that the scene stays as read.
+
+        That is in this window: in another one, the user can go on.
+        """
         if event.type == "ESC" and event.value == "PRESS":
             self.cancel(context)
             self.report({"INFO"}, "Cancelled: nothing was changed")
@@ -77,10 +98,11 @@ class Stepping:
         if event.type != "TIMER":
             return {"RUNNING_MODAL"}
         try:
+            self._check_there()
             outcome = advance(self._steps, _SLICE)
         except BaseException as error:
             self.cancel(context)
-            if not isinstance(error, _REFUSALS):
+            if not isinstance(error, _refusals()):
                 raise
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
@@ -96,6 +118,13 @@ class Stepping:
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
         context.workspace.status_text_set(None)
+
+    def _check_there(self) -> None:
+        there = {obj for scene in bpy.data.scenes for obj in scene.objects}
+        for obj, name, mode in self._needed:
+            if obj not in there or obj.mode != mode:
+                what = "was deleted or undone in another window, or is in another mode"
+                raise Refusal(f"'{name}' {what} by now, so nothing was changed. Run {self.bl_label} again")
 
     def _show(self, context: bpy.types.Context, progress) -> None:
         percent = int(100 * progress.share)
