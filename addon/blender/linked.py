@@ -47,8 +47,6 @@ class TESSERA_PG_mesh(bpy.types.PropertyGroup):
         description="Mesh again at each change of the source. Switch it off for meshes that take long",
         update=_changed,
     )
-    # What it was made of last: while that is the same there is nothing to do.
-    fingerprint: bpy.props.StringProperty(options={"HIDDEN"})
     message: bpy.props.StringProperty(options={"HIDDEN"})
     n_triangles: bpy.props.IntProperty(name="Triangles")
     q_worst: bpy.props.FloatProperty(name="Worst Quality")
@@ -70,22 +68,22 @@ def unlink(obj: bpy.types.Object) -> None:
     note = obj.tessera
     note.source = None
     note.automatic = False
-    note.message = note.fingerprint = ""
+    note.message = obj.data.tessera_made_of = ""
 
 
 def mark_as_current(obj: bpy.types.Object, meshed: Meshed, draft: bool = False) -> None:
     """Note that a linked mesh is what is made of this now, or a draft of it."""
-    obj.tessera.fingerprint = _DRAFT * draft + fingerprint(meshed.task, linked_settings(obj))
+    obj.data.tessera_made_of = _DRAFT * draft + fingerprint(meshed.task, linked_settings(obj))
 
 
 def made_of(obj: bpy.types.Object) -> str:
     """The `fingerprint` of what a linked mesh, or a draft of it, was made of last."""
-    return obj.tessera.fingerprint.removeprefix(_DRAFT)
+    return obj.data.tessera_made_of.removeprefix(_DRAFT)
 
 
 def is_draft(obj: bpy.types.Object) -> bool:
     """Whether an object is a draft of a linked mesh, to be meshed as its settings say."""
-    return obj.tessera.fingerprint.startswith(_DRAFT) and is_linked(obj)
+    return is_linked(obj) and obj.data.tessera_made_of.startswith(_DRAFT)
 
 
 def remember_quality(obj: bpy.types.Object, made: list[Meshed]) -> None:
@@ -190,14 +188,17 @@ def _sized_by(obj: bpy.types.Object) -> bpy.types.Object | None:
 
 
 def register() -> None:
-    """Give every object its note."""
+    """Give every object its note, and every mesh what it was made of: as long as that is the same, nothing is to do."""
     bpy.utils.register_class(TESSERA_PG_link_settings)
     bpy.utils.register_class(TESSERA_PG_mesh)
     bpy.types.Object.tessera = bpy.props.PointerProperty(type=TESSERA_PG_mesh)
+    # At the mesh, as undo may bring back an object and leave its mesh as it is.
+    bpy.types.Mesh.tessera_made_of = bpy.props.StringProperty(options={"HIDDEN"})
 
 
 def unregister() -> None:
     """Take it back."""
+    del bpy.types.Mesh.tessera_made_of
     del bpy.types.Object.tessera
     bpy.utils.unregister_class(TESSERA_PG_mesh)
     bpy.utils.unregister_class(TESSERA_PG_link_settings)

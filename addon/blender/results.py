@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from .linked import link, mark_as_current, remember_quality
+from .linked import is_linked, link, mark_as_current, remember_quality, unlink
 from .preferences import collection_name
 from .writing import write_again, write_in_place, write_joined, write_mesh
 
@@ -26,6 +26,8 @@ def write_results(made: list[Meshed]) -> list[bpy.types.Object]:
         for meshed in made:
             obj = write(meshed.task.obj, list(meshed.pieces))
             remember_quality(obj, [meshed])
+            if settings.result == "REPLACE" and is_linked(obj):
+                unlink(obj)  # else it would be thrown away when its source changes
             if settings.keep_linked and settings.result == "NEW":
                 link(obj, meshed)
             objects.append(obj)
@@ -44,8 +46,8 @@ def rewrite(target: bpy.types.Object, meshed: Meshed, draft: bool = False) -> No
 
 def select(
     context: bpy.types.Context, made: list[bpy.types.Object], sources: list[bpy.types.Object], active: int
-) -> None:
-    """Select the new objects in place of their sources, as Blender's own Convert does; if they are to be seen.
+) -> bool:
+    """Select the new objects in place of their sources, as Blender's own Convert does; whether any is to be seen.
 
     active: which of them is the active one, or of their sources, where they were joined.
     """
@@ -57,6 +59,7 @@ def select(
         obj.select_set(True)
     if shown:
         context.view_layer.objects.active = shown[min(active, len(shown) - 1)]
+    return any(obj.visible_get() for obj in shown)
 
 
 def _move(objects: list[bpy.types.Object], name: str) -> None:

@@ -135,7 +135,7 @@ def linking():
     yield
     yield
     facts["followed"] = meshes(), round(max(vertex.co.x for vertex in mesh.data.vertices), 3), words.dimensions.x
-    yield from until(lambda: mesh.tessera.fingerprint)  # not a draft, which stays out of date
+    yield from until(lambda: mesh.data.tessera_made_of)  # not a draft, which stays out of date
     words.hide_set(True)
     mesh.select_set(False)
     area().spaces[0].show_region_ui = True

@@ -236,3 +236,23 @@ def test_a_draft_that_cannot_be_finished_is_unlinked_with_a_word_of_it(square, t
     select(mesh)
     assert bpy.ops.tessera.unlink() == {"FINISHED"} and mesh.tessera.source is None
     assert "Mesh 'Square Mesh' stays the draft that it is: Curve 'Square', spline 1 crosses" in capfd.readouterr().out
+
+
+def test_undo_brings_back_the_meshes_of_copies_too(square, timers):
+    """Undo may bring back an object, and leave the mesh that following has given it."""
+    curve, mesh = square
+    follow(mesh)
+    timers.run()
+    copy = mesh.copy()
+    copy.data = mesh.data.copy()
+    bpy.context.scene.collection.objects.link(copy)
+    bpy.ops.ed.undo_push(message="copy")
+    names = curve.name, mesh.name, copy.name
+    move(curve, 1, 3.0)
+    bpy.ops.ed.undo_push(message="move")
+    timers.run()
+    assert right(mesh) == right(copy) == 3.0
+    bpy.ops.ed.undo()
+    timers.run()
+    _, mesh, copy = (bpy.data.objects[name] for name in names)
+    assert right(mesh) == right(copy) == 1.0

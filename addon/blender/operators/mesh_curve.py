@@ -8,7 +8,6 @@ import bpy
 
 from ..kinds import is_readable
 from ..layout import draw_settings
-from ..linked import is_linked, unlink
 from ..preferences import default_settings
 from ..properties import annotations, read_settings, start_with
 from .stepping import Refusal, Stepping
@@ -60,10 +59,9 @@ class TESSERA_OT_mesh_curve(Stepping, bpy.types.Operator):
             bpy.ops.object.mode_set(mode="OBJECT")
         made = results.write_results(list(batch.meshed))
         replaced = read_settings(self).result == "REPLACE"
-        for obj in made if replaced else ():
-            if is_linked(obj):
-                unlink(obj)  # else it would be thrown away when its source changes
-        results.select(context, made, [] if replaced else sources, active)
+        if not results.select(context, made, [] if replaced else sources, active):
+            name = made[0].users_collection[0].name
+            self.report({"WARNING"}, f"The mesh is in the collection '{name}', which this view layer does not show")
         if len(batch.meshed) == 1:
             # So that Adjust Last Operation starts from a length, and not from 0.
             self.edge_length = batch.meshed[0].edge_length
