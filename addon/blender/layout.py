@@ -58,13 +58,13 @@ def draw_text(layout: bpy.types.UILayout, text: str, width: int) -> None:
 
 def draw_failures(layout: bpy.types.UILayout, most: int, width: int) -> None:
     """Each failure of the last use, with a button that leads to its place."""
-    for noted in notes.last[:most]:
+    failed = notes.still_there()
+    for noted in failed[:most]:
         column = layout.column(align=True)
         draw_text(column, noted.sentence, width)
         if noted.place is not None:
-            obj = bpy.data.objects.get(noted.obj)
-            text = "Show the Place" if obj is not None and obj.type == "FONT" else "Select the Point"
+            text = "Show the Place" if bpy.data.objects[noted.obj].type == "FONT" else "Select the Point"
             button = column.operator("tessera.select_place", text=text, icon="RESTRICT_SELECT_OFF")
             button.object_name, button.spline, button.place = noted.obj, noted.spline, noted.place
-    if len(notes.last) > most:
-        layout.label(text=f"… and {len(notes.last) - most} more: see the Info editor")
+    if len(failed) > most:
+        layout.label(text=f"… and {len(failed) - most} more: see the Info editor")

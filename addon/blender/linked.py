@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import zlib
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -53,6 +54,8 @@ class TESSERA_PG_mesh(bpy.types.PropertyGroup):
     q_mean: bpy.props.FloatProperty(name="Mean Quality")
     edge_lengths: bpy.props.FloatVectorProperty(name="Edge Lengths", size=3, unit="LENGTH")
     histogram: bpy.props.IntVectorProperty(name="Qualities", size=len(BINS) - 1)
+    # Of the mesh that these numbers are of: `shape_of`.
+    shape: bpy.props.StringProperty(options={"HIDDEN"})
 
 
 def link(obj: bpy.types.Object, meshed: Meshed) -> None:
@@ -98,7 +101,14 @@ def remember_quality(obj: bpy.types.Object, made: list[Meshed]) -> None:
     note.edge_lengths = lengths[:, 0].min(), np.average(lengths[:, 1], weights=counts), lengths[:, 2].max()
     quality = np.concatenate([piece_quality(piece) for meshed in made for piece in meshed.pieces])
     note.histogram = np.histogram(np.clip(quality, BINS[0], BINS[-1]), BINS)[0].tolist()
-    note.message = ""
+    note.message, note.shape = "", shape_of(obj.data)
+
+
+def shape_of(mesh: bpy.types.Mesh) -> str:
+    """A word that is the same as long as nobody edits the mesh; of its counts and coordinates."""
+    points = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    mesh.vertices.foreach_get("co", points)
+    return f"{len(mesh.polygons)} {zlib.crc32(points)}"
 
 
 def piece_quality(piece: Piece) -> np.ndarray:

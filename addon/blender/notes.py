@@ -27,6 +27,11 @@ class Noted:
 last: list[Noted] = []
 
 
+def still_there() -> list[Noted]:
+    """Those whose objects have not been deleted since."""
+    return [noted for noted in last if noted.obj in bpy.data.objects]
+
+
 def note(failures: Iterable[Failure]) -> None:
     """Keep these failures in place of those of the last use."""
     last[:] = [Noted(failure.obj, str(failure), failure.spline, failure.place) for failure in failures]

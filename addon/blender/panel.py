@@ -6,7 +6,7 @@ import bpy
 
 from . import notes, overlay
 from .layout import draw_failures, draw_settings, draw_text
-from .linked import BINS, is_linked, problem
+from .linked import BINS, is_linked, problem, shape_of
 
 _MOST_FAILURES = 5
 _LINE = 42  # characters that fit the sidebar
@@ -30,6 +30,8 @@ class TESSERA_PT_mesh(bpy.types.Panel):
         if context.window_manager.tessera_show_quality:
             overlay.draw_legend(layout)
         if obj is not None and obj.type == "MESH" and obj.tessera.n_triangles:
+            if obj.tessera.shape != shape_of(obj.data):
+                draw_text(layout, "Edited since it was meshed: these numbers are of before", _LINE)
             _draw_statistics(layout, obj.tessera)
 
 
@@ -74,7 +76,7 @@ class TESSERA_PT_failures(bpy.types.Panel):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Something failed in the last use."""
-        return bool(notes.last)
+        return bool(notes.still_there())
 
     def draw(self, context: bpy.types.Context) -> None:
         """Each failure, with a button that leads to its place."""

@@ -12,7 +12,7 @@ from addon.blender import overlay, preferences
 from addon.blender.linked import BINS
 from addon.blender.settings import Settings, table
 from addon.tessera.quality import element_quality
-from tests.blender.drawing import SQUARE, circle, poly_curve, select, triangles, vertices
+from tests.blender.drawing import SQUARE, circle, poly_curve, select, text, triangles, vertices
 
 
 class Layout:
@@ -119,6 +119,27 @@ def test_linked_meshes_and_failures_have_panels():
     assert (button.words, button.object_name, button.spline) == (("tessera.select_place",), "Broken", 1)
     select(good)
     assert not linked.poll(bpy.context)
+    bpy.data.objects.remove(broken)
+    assert not failures.poll(bpy.context)
+
+
+def test_what_cannot_be_selected_is_shown():
+    select(text("a"))
+    with pytest.raises(RuntimeError, match=r"Text 'Text': .*triangles.*a larger Shortest Edge"):
+        bpy.ops.tessera.mesh_curve(edge_length=0.1, use_distance=True, distance_length=1e-5)
+    buttons = drawn(bpy.types.TESSERA_PT_failures).named("operator")
+    assert [button.more["text"] for button in buttons] == ["Show the Place"]
+
+
+def test_the_sidebar_says_that_a_mesh_was_edited():
+    def labels():
+        return [label.more["text"] for label in drawn(bpy.types.TESSERA_PT_mesh).named("label")]
+
+    circle()
+    bpy.ops.tessera.mesh_curve(edge_length=0.2)
+    assert not any("Edited" in label for label in labels())
+    bpy.context.object.data.vertices[3].co.z += 1
+    assert any("Edited since it was meshed" in label for label in labels())
 
 
 def test_another_file_has_no_failures_yet(tmp_path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -99,7 +100,9 @@ class Stepping:
             return {"RUNNING_MODAL"}
         try:
             self._check_there()
-            outcome = advance(self._steps, _SLICE)
+            # As long as Blender takes to draw, where that is longer: else drawing would be most of the work.
+            drawing = time.perf_counter() - self._rested
+            outcome = advance(self._steps, min(max(_SLICE, drawing), PATIENCE))
         except BaseException as error:
             self.cancel(context)
             if not isinstance(error, _refusals()):
@@ -127,6 +130,7 @@ class Stepping:
                 raise Refusal(f"'{name}' {what} by now, so nothing was changed. Run {self.bl_label} again")
 
     def _show(self, context: bpy.types.Context, progress) -> None:
+        self._rested = time.perf_counter()
         percent = int(100 * progress.share)
         context.window_manager.progress_update(percent)
         context.workspace.status_text_set(f"{self.bl_label}: {percent} % ({progress.stage})    Esc: cancel")
