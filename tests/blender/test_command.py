@@ -210,6 +210,8 @@ def test_an_output_that_cannot_be_is_said_before_anything_is_meshed(tmp_path, ca
         (("--thickness-elements", "nan"), "nan is not between 0.5"),
         (("--report", "/nowhere/report.json"), "no folder '/nowhere'"),
         (("nothing.svg",), "is no file"),
+        (("long" * 100 + ".svg",), "is no file"),
+        (("",), "an INPUT is empty"),
         ((__file__,), "neither a .blend nor an .svg"),
     ],
 )

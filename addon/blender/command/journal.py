@@ -131,10 +131,15 @@ def forget(target: Path) -> None:
 
 
 def write_atomically(path: Path, text: str) -> None:
-    """The file is there with all of the text, or as it was before."""
+    """The file is there with all of the text, or as it was before. Raises OSError with its path."""
     new = path.with_name(f"{path.name}.{os.getpid()}.new")
-    new.write_text(text, encoding="utf-8")
-    os.replace(new, path)
+    try:
+        new.write_text(text, encoding="utf-8")
+        os.replace(new, path)
+    except OSError as error:
+        if os.path.exists(new):
+            os.remove(new)
+        raise OSError(error.errno, error.strerror, str(path)) from error
 
 
 def _whole_lines(path: Path) -> list[dict]:

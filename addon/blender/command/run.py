@@ -12,6 +12,7 @@ import bpy
 from . import console
 from .arguments import Request, UsageError, parse
 from .claims import Claims, RunIsOver
+from .files import identity
 from .inputs import InputError, choose
 from .journal import folder_of, forget
 from .records import Record, exit_status, failed, summary, write_report
@@ -46,7 +47,16 @@ def _check(request: Request) -> None:
 
     if request.workers > 1 and not workers.can_start():
         raise UsageError("--jobs needs the Blender program: the bpy module cannot be started again")
-    if request.objects is not None and request.jobs[0].source is None:
+    if request.jobs[0].source is None:
+        _check_open_file(request)
+
+
+def _check_open_file(request: Request) -> None:
+    """Raise where the open file is an input, and would be written over, or has not the objects that are named."""
+    for option, path in (("--output", request.jobs[0].target), ("--report", request.report)):
+        if path and bpy.data.filepath and identity(path) == identity(bpy.data.filepath):
+            raise UsageError(f"'{path}' is the open file, and would be written over: give another {option}")
+    if request.objects is not None:
         choose(request.objects)
 
 
