@@ -161,25 +161,62 @@ def test_a_run_that_is_killed_loses_what_is_in_hand_alone(tmp_path, count, edge_
     assert counts == {name: len(bpy.data.objects[f"{name} Mesh"].data.polygons) for name in counts}
 
 
-@settings(max_examples=40, deadline=None)
-@given(counts=st.lists(st.integers(0, 5), min_size=1, max_size=6), cut=st.integers(0, 10_000))
-def test_a_journal_that_was_cut_off_anywhere_has_its_whole_entries(tmp_path_factory, counts, cut):
+@settings(max_examples=60, deadline=None)
+@given(
+    counts=st.lists(st.integers(0, 5), min_size=1, max_size=6),
+    ending=st.sampled_from(["jsonl", "bin"]),
+    damage=st.sampled_from(["cut", "zeros", "removed"]),
+    at=st.integers(0, 10_000),
+)
+def test_a_journal_that_was_damaged_anywhere_has_its_whole_entries(tmp_path_factory, counts, ending, damage, at):
     target = tmp_path_factory.mktemp("journal") / "out.blend"
     journal.folder_of(target).mkdir(parents=True)
     writing = journal.Journal(target, "1")
     for number, count in enumerate(counts):
         arrays = [np.full((count, 2), number, dtype=np.float64), np.arange(count, dtype=np.int32)]
-        writing.add(str(number), {"status": "meshed"}, arrays)
+        writing.add(str(number), {"status": "meshed", "edge_lengths": (0.1, 1 / 3, 2e-7)}, arrays)
     writing.close()
-    (lines,) = journal.folder_of(target).glob("*.jsonl")
-    text = lines.read_text()
-    text = text[: cut % (len(text) + 1)]
-    lines.write_text(text)
+    (path,) = journal.folder_of(target).glob(f"*.{ending}")
+    raw = path.read_bytes()
+    at %= len(raw) + 1
+    ends = [i + 1 for i, byte in enumerate(raw) if byte == 10] if ending == "jsonl" else None
+    path.write_bytes(raw[:at] + bytes(len(raw) - at) * (damage == "zeros"))
+    if damage == "removed":
+        path.unlink()
     entries = journal.Journal(target, "2").entries
-    assert sorted(entries) == [str(number) for number in range(text.count("\n"))]
+    assert list(entries) == [str(number) for number in range(len(entries))]
+    if damage == "removed":
+        assert not entries
+    elif ends:  # a line may do without its end
+        assert len(entries) in {sum(end <= at for end in ends), sum(end - 1 <= at for end in ends)}
     for number, entry in enumerate(entries.values()):
         first, second = journal.load(entry)
         assert np.array_equal(first, np.full((counts[number], 2), number)) and len(second) == counts[number]
+
+
+@pytest.mark.parametrize(
+    ("damaged", "left"),
+    [
+        ("*.jsonl", b"\0" * 2000),
+        ("*.jsonl", b"null\n[]\n\xff\n"),
+        ("*.bin", None),
+        ("*.bin", b""),
+        ("done.json", b""),
+        ("done.json", b"{}"),
+        ("done.json", b"null"),
+    ],
+)
+def test_what_is_damaged_is_meshed_again(tmp_path, damaged, left):
+    bow_tie_and_others(1)
+    run(tmp_path)
+    (path,) = journal.folder_of(tmp_path / "out.blend").glob(damaged)
+    path.unlink() if left is None else path.write_bytes(left)
+    status, records = run(tmp_path, "--resume")
+    assert status == 1 and {name: record["status"] for name, record in records.items()} == {
+        "A0": "meshed",
+        "Z": "failed",
+    }
+    assert records["A0"]["earlier"] == (damaged == "done.json")
 
 
 def test_a_claim_is_given_once_and_none_when_no_one_leads(tmp_path):

@@ -16,7 +16,7 @@ from .claims import Claims
 from .curves import Curve, known, mesh_curves, read_curve, write
 from .files import Job
 from .inputs import InputError, choose, open_file
-from .journal import Journal, drop_arrays, read_done, write_done
+from .journal import Journal, read_done, write_done
 from .outputs import OutputError, write_file
 from .records import Record, failed, name_of
 
@@ -43,7 +43,7 @@ def mesh_file(job: Job, request: Request, claims: Claims, number: int = 0) -> li
         journal.close()
     write_done(job.target, key, claims.run, [asdict(record) for record in records])
     if all(record.status != "failed" for record in records):
-        drop_arrays(job.target)
+        journal.drop()
     return records
 
 
