@@ -4,7 +4,8 @@ Beside each file that is written there is the folder `.tessera/NAME/` while it i
 files of its own there: the arrays of a curve to `RUN-PID.bin`, then its line to `RUN-PID.jsonl`. A curve counts once
 its line is whole, so that a kill loses what is in hand alone. `done.json` is written when the file itself is. What
 another version of the add-on has done does not count, so that no run mixes the meshes of two; nor does what a power cut
-or a full disk has damaged.
+or a full disk has damaged. `run` names the run whose the file is: an earlier one, whose processes may still end, leaves
+it alone from then on.
 """
 
 from __future__ import annotations
@@ -137,6 +138,20 @@ def read_done(target: Path, key: str, run: str) -> list[dict] | None:
     if failed or done["key"] != key or not target.exists():
         return None
     return [record | {"earlier": True} for record in done["records"]]
+
+
+def take(target: Path, run: str) -> None:
+    """From now on the file is this run's."""
+    folder_of(target).mkdir(parents=True, exist_ok=True)
+    write_atomically(folder_of(target) / "run", run)
+
+
+def is_taken(target: Path, run: str) -> bool:
+    """Whether the file is still this run's."""
+    try:
+        return (folder_of(target) / "run").read_bytes() == run.encode()
+    except FileNotFoundError:
+        return False
 
 
 def forget(target: Path) -> None:
