@@ -103,6 +103,31 @@ def test_an_error_of_tessera_itself_is_of_the_curve_that_has_it_though_many_are_
     assert [record["reason"] for record in records] == [None, "internal", None]
 
 
+@pytest.mark.parametrize("where", ["write", "write_file"])
+def test_an_error_of_tessera_itself_in_writing_is_of_that_file_and_the_others_go_on(
+    tmp_path, capsys, monkeypatch, where
+):
+    from addon.blender.command import batch
+
+    inputs, report, works = tmp_path / "in", tmp_path / "report.json", getattr(batch, where)
+    inputs.mkdir()
+    poly_curve(SQUARE, name="A")
+    for name in "ab":
+        bpy.ops.wm.save_as_mainfile(filepath=str(inputs / f"{name}.blend"))
+
+    def fails(*arguments):
+        if "a.blend" in bpy.data.filepath:
+            raise KeyError("in a.blend")
+        return works(*arguments)
+
+    monkeypatch.setattr(batch, where, fails)
+    assert run(tmp_path / "out", inputs, "--report", report) == 1
+    assert "Traceback" in (said := capsys.readouterr().err) and "a.blend: failed (internal): KeyError: " in said
+    assert [path.name for path in (tmp_path / "out").glob("*.blend")] == ["b.blend"]
+    records = json.loads(report.read_text())["curves"]
+    assert [(record["object"], record["reason"]) for record in records] == [(None, "internal"), ("A", None)]
+
+
 def test_seconds_of_curves_that_are_meshed_together_are_shared(tmp_path):
     for i in range(6):
         poly_curve(star(5 + i), name=f"A{i}")

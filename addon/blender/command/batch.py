@@ -13,7 +13,7 @@ from .. import meshing
 from . import console, interrupts
 from .arguments import Request
 from .claims import Claims, RunIsOver
-from .curves import Curve, known, mesh_curves, read_curve, write
+from .curves import Curve, internal, known, mesh_curves, read_curve, write
 from .files import Job
 from .inputs import InputError, choose, open_file
 from .journal import Journal, is_taken, read_done, write_done
@@ -171,6 +171,8 @@ def _write(job: Job, request: Request, claims: Claims, meshed: list[Curve]) -> R
         raise
     except OutputError as error:
         return failed(job.name, None, "output", str(error))
+    except Exception as error:
+        return internal(job, None, error)
     return None
 
 
