@@ -205,6 +205,25 @@ def test_a_dry_run_says_what_it_would_do_and_does_nothing(tmp_path, capsys):
     assert [path.name for path in tmp_path.iterdir()] == ["floor.blend"] and meshes() == []
 
 
+def test_a_line_stays_one_whatever_an_object_is_called(tmp_path, capsys):
+    poly_curve(SQUARE, name="A\nB")
+    poly_curve(BOW_TIE, name="C\x1b[31m\u2028")
+    for way in ((), ("--dry-run",)):
+        run(tmp_path / "out.blend", *way)
+        said = capsys.readouterr()
+        lines = (said.out + said.err).splitlines()
+        assert [line[:4] for line in lines if "A" in line[:1]] == ["A\\nB"]
+        assert [line.startswith("C\\x1b[31m\\u2028: ") for line in lines if "C" in line[:1]] == [True]
+        assert "\x1b" not in said.out + said.err
+
+
+@pytest.mark.parametrize(("result", "warned"), [("new", False), ("join", True), ("replace", True)])
+def test_a_link_that_cannot_be_kept_is_said(tmp_path, capsys, result, warned):
+    poly_curve(SQUARE, name="A")
+    assert run(tmp_path / "out.blend", "--keep-linked", "--result", result) == 0
+    assert (f"--keep-linked has no effect with --result {result}" in capsys.readouterr().err) == warned
+
+
 def test_a_file_without_curves_is_a_failure(tmp_path, capsys):
     for way in ((), ("--dry-run",)):
         assert run(tmp_path / "out.blend", *way) == 1

@@ -222,6 +222,28 @@ def test_what_is_damaged_is_meshed_again(tmp_path, damaged, left):
     assert records["A0"]["earlier"] == (damaged == "done.json")
 
 
+def test_a_dry_run_of_what_is_left_leaves_out_what_is_done(tmp_path, capsys):
+    bow_tie_and_others(2)
+    scene = tmp_path / "scene.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(scene))
+    words = ["mesh", str(scene), "--edge-length", "0.3", "--output", str(tmp_path / "out.blend"), "--resume"]
+
+    def planned():
+        capsys.readouterr()
+        status, said = command.run([*words, "--dry-run"]), capsys.readouterr()
+        return status, [line.split(" loop")[0] for line in said.out.splitlines() if " -> " in line], said.err
+
+    every = [f"scene.blend: {name}: 1" for name in ("A0", "A1", "Z")]
+    assert planned() == (0, every, "")
+    command.run(words)
+    assert planned()[:2] == (0, every[2:]) and "scene.blend: 2 curves are meshed already" in planned()[2]
+    bpy.data.objects.remove(bpy.data.objects["Z"])
+    bpy.ops.wm.save_as_mainfile(filepath=str(scene))
+    assert planned()[:2] == (0, [])
+    assert command.run(words) == 0
+    assert planned()[:2] == (0, []) and "scene.blend: done already" in planned()[2]
+
+
 def test_ctrl_c_ends_the_command_after_the_curves_in_hand(tmp_path, capsys, monkeypatch):
     meshed, before = meshing.mesh_tasks, signal.getsignal(signal.SIGINT)
 

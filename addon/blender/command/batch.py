@@ -116,7 +116,14 @@ def _handfuls(curves: Iterable[Curve], request: Request) -> Iterator[list[Curve]
 
 
 def plan_file(job: Job, request: Request) -> list[Record]:
-    """Say what would be meshed, without meshing it. Returns the records of what could not be read."""
+    """Say what would be meshed, without meshing it. Returns the records of what could not be read, or is done already.
+
+    Raises Interrupted.
+    """
+    none = Claims("no run")
+    if request.resume and (done := done_by(job, request, none)) is not None:
+        console.say(f"{job.name}: done already")
+        return done
     try:
         open_file(job.source)
         objects = choose(request.objects)
@@ -125,14 +132,25 @@ def plan_file(job: Job, request: Request) -> list[Record]:
         console.show(records[0])
         return records
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    curves = [read_curve(job, obj, depsgraph, request) for obj in objects]
-    for curve in curves:
-        if curve.task is None:
-            console.show(curve.record)
+    journal = Journal(job.target, none.run)
+    records, earlier, wanted = [], 0, 0
+    for obj in objects:
+        interrupts.check()
+        curve = read_curve(job, obj, depsgraph, request)
+        if request.resume:
+            curve = known(job, curve, journal)
+        if curve.record is None:
+            wanted += 1
+            console.plan(name_of(job.name, obj.name), _size(curve.task), job.target)
+            continue
+        records.append(curve.record)
+        if curve.record.status == "meshed":
+            earlier += 1
         else:
-            print(f"{name_of(job.name, curve.task.obj.name)}: {_size(curve.task)} -> {job.target}")
-    records = [curve.record for curve in curves if curve.record is not None]
-    return records if len(records) < len(curves) else _nothing_said(job, records)
+            console.show(curve.record)
+    if earlier:
+        console.say(f"{job.name}: {earlier} {'curve is' if earlier == 1 else 'curves are'} meshed already")
+    return records if wanted or earlier else _nothing_said(job, records)
 
 
 def _mesh_opened(job: Job, request: Request, claims: Claims, number: int, journal: Journal) -> list[Record]:

@@ -55,6 +55,9 @@ def _check(request: Request) -> None:
         raise UsageError("--jobs needs the Blender program: the bpy module cannot be started again")
     if request.jobs[0].source is None:
         _check_open_file(request)
+    result = request.settings.result
+    if request.settings.keep_linked and result != "NEW" and request.helps is None:
+        console.say(f"warning: --keep-linked has no effect with --result {result.lower()}: leave one of them out")
 
 
 def _check_open_file(request: Request) -> None:
