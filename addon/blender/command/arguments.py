@@ -24,7 +24,7 @@ _EXAMPLES = """examples:
   the same again after it was stopped, or after some drawings were mended:
     blender -b --command tessera mesh drawings --output meshes --format glb --jobs 4 --report report.json --resume
 
-exit status: 0 all were meshed, 1 some failed or nothing was there, 2 the command was not understood
+exit status: 0 all were meshed, 1 some failed or nothing was there, 2 the command was not understood, 130 Ctrl-C
 """
 
 

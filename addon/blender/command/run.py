@@ -43,7 +43,8 @@ def run(arguments: list[str]) -> int:
 def _reason(error: Exception) -> str:
     """Why the run was stopped, for the user."""
     if isinstance(error, OSError):  # of the journal: the disk is full, or the folder cannot be read or written
-        return f"stopped at '{error.filename}': {error.strerror}; when it can be, run the same with --resume"
+        where = f" at '{error.filename}'" if error.filename else ""
+        return f"stopped{where}: {error.strerror}; once that is mended, the same command with --resume goes on"
     return str(error)
 
 
