@@ -103,6 +103,31 @@ def test_an_error_of_tessera_itself_is_of_the_curve_that_has_it_though_many_are_
     assert [record["reason"] for record in records] == [None, "internal", None]
 
 
+@pytest.mark.parametrize("where", ["write", "write_file"])
+def test_an_error_of_tessera_itself_in_writing_is_of_that_file_and_the_others_go_on(
+    tmp_path, capsys, monkeypatch, where
+):
+    from addon.blender.command import batch
+
+    inputs, report, works = tmp_path / "in", tmp_path / "report.json", getattr(batch, where)
+    inputs.mkdir()
+    poly_curve(SQUARE, name="A")
+    for name in "ab":
+        bpy.ops.wm.save_as_mainfile(filepath=str(inputs / f"{name}.blend"))
+
+    def fails(*arguments):
+        if "a.blend" in bpy.data.filepath:
+            raise KeyError("in a.blend")
+        return works(*arguments)
+
+    monkeypatch.setattr(batch, where, fails)
+    assert run(tmp_path / "out", inputs, "--report", report) == 1
+    assert "Traceback" in (said := capsys.readouterr().err) and "a.blend: failed (internal): KeyError: " in said
+    assert [path.name for path in (tmp_path / "out").glob("*.blend")] == ["b.blend"]
+    records = json.loads(report.read_text())["curves"]
+    assert [(record["object"], record["reason"]) for record in records] == [(None, "internal"), ("A", None)]
+
+
 def test_seconds_of_curves_that_are_meshed_together_are_shared(tmp_path):
     for i in range(6):
         poly_curve(star(5 + i), name=f"A{i}")
@@ -180,6 +205,25 @@ def test_a_dry_run_says_what_it_would_do_and_does_nothing(tmp_path, capsys):
     assert [path.name for path in tmp_path.iterdir()] == ["floor.blend"] and meshes() == []
 
 
+def test_a_line_stays_one_whatever_an_object_is_called(tmp_path, capsys):
+    poly_curve(SQUARE, name="A\nB")
+    poly_curve(BOW_TIE, name="C\x1b[31m\u2028")
+    for way in ((), ("--dry-run",)):
+        run(tmp_path / "out.blend", *way)
+        said = capsys.readouterr()
+        lines = (said.out + said.err).splitlines()
+        assert [line[:4] for line in lines if "A" in line[:1]] == ["A\\nB"]
+        assert [line.startswith("C\\x1b[31m\\u2028: ") for line in lines if "C" in line[:1]] == [True]
+        assert "\x1b" not in said.out + said.err
+
+
+@pytest.mark.parametrize(("result", "warned"), [("new", False), ("join", True), ("replace", True)])
+def test_a_link_that_cannot_be_kept_is_said(tmp_path, capsys, result, warned):
+    poly_curve(SQUARE, name="A")
+    assert run(tmp_path / "out.blend", "--keep-linked", "--result", result) == 0
+    assert (f"--keep-linked has no effect with --result {result}" in capsys.readouterr().err) == warned
+
+
 def test_a_file_without_curves_is_a_failure(tmp_path, capsys):
     for way in ((), ("--dry-run",)):
         assert run(tmp_path / "out.blend", *way) == 1
@@ -204,8 +248,14 @@ def test_an_output_that_cannot_be_is_said_before_anything_is_meshed(tmp_path, ca
         (("--jobs", "0"), "--jobs is a number"),
         (("--jobs", "2"), "--jobs needs the Blender program"),
         (("--gradation", "0"), "is not between 1.01"),
+        (("--edge-length", "inf"), "inf is not between 0"),
+        (("--min-edge-length", "1e39"), "1e39 is not between 0"),
+        (("--object-reach", "1e400"), "1e400 is not between 0"),
+        (("--thickness-elements", "nan"), "nan is not between 0.5"),
         (("--report", "/nowhere/report.json"), "no folder '/nowhere'"),
         (("nothing.svg",), "is no file"),
+        (("long" * 100 + ".svg",), "is no file"),
+        (("",), "an INPUT is empty"),
         ((__file__,), "neither a .blend nor an .svg"),
     ],
 )

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from addon.blender import command
+from addon.blender.command import journal
 from scripts.fetch_wheels import ROOT
 from tests.blender.drawing import SQUARE, poly_curve, star
 
@@ -109,6 +110,56 @@ def test_two_inputs_of_one_name_and_an_input_as_output_are_refused(tmp_path, cap
     assert "would both be written to" in capsys.readouterr().err
     assert run(tmp_path / "*.blend", "--output", tmp_path) == 2
     assert "is an input, and would be written over" in capsys.readouterr().err
+
+
+def test_an_input_is_never_written_over(tmp_path, capsys):
+    scene, link = tmp_path / "scene.blend", tmp_path / "link.blend"
+    save(scene, SQUARE)
+    link.symlink_to(scene)
+    before = scene.read_bytes()
+    for words in ((scene, "--output", scene), (scene, "--output", link), (link, "--output", scene)):
+        assert run(*words) == 2
+        assert "is an input, and would be written over: give another --output" in capsys.readouterr().err
+    for target in (scene, link):
+        assert run("--output", target) == 2
+        assert "is the open file, and would be written over: give another --output" in capsys.readouterr().err
+    drawing(tmp_path / "scene.svg", '<rect width="90" height="45"/>')
+    assert run(tmp_path / "*.svg", link, "--output", tmp_path) == 2
+    assert scene.read_bytes() == before
+
+
+def test_a_report_takes_no_other_files_place(tmp_path, capsys):
+    scene, output, link = tmp_path / "scene.blend", tmp_path / "out.blend", tmp_path / "report.json"
+    save(scene, SQUARE)
+    link.symlink_to(output)  # which is not there yet
+    before = scene.read_bytes()
+    for words in ((), (scene,)):
+        for report in (scene, output, link):
+            assert run(*words, "--output", output, "--report", report) == 2
+            assert "give another" in capsys.readouterr().err
+    for report in (tmp_path, ""):
+        assert run("--output", output, "--report", report) == 2
+        assert "is a folder: give --report a file" in capsys.readouterr().err
+    assert scene.read_bytes() == before and not output.exists()
+
+
+def test_a_report_that_fails_leaves_nothing_behind(tmp_path, capsys):
+    poly_curve(SQUARE, name="A")
+    assert run("--output", tmp_path / "out.blend", "--report", tmp_path / ("long" * 62 + ".json")) == 1
+    assert "the report was not written: " in capsys.readouterr().err
+    with pytest.raises(IsADirectoryError):
+        journal.write_atomically(tmp_path, "text")
+    assert [path.name for path in tmp_path.iterdir()] == ["out.blend"] and not list(tmp_path.parent.glob("*.new"))
+
+
+def test_a_folder_that_is_named_as_a_file_is_refused_unless_it_is_there(tmp_path, capsys):
+    drawing(tmp_path / "a.svg", '<rect width="90" height="45"/>')
+    assert run(tmp_path, "--output", tmp_path / "all.blend", "--dry-run") == 2
+    assert "'all.blend' would be a folder" in capsys.readouterr().err
+    assert run(tmp_path, "--output", "") == 2
+    assert "--output is empty" in capsys.readouterr().err
+    (tmp_path / "all.blend").mkdir()
+    assert run(tmp_path / "*.svg", "--output", tmp_path / "all.blend", "--dry-run") == 0
 
 
 def test_the_users_own_add_ons_and_preferences_stay(tmp_path):

@@ -29,8 +29,11 @@ def blender(request, zips, tmp_path_factory):  # noqa: F811
     user = tmp_path_factory.mktemp("user")
     environment = os.environ | {"BLENDER_USER_RESOURCES": str(user), "PYTHONNOUSERSITE": "1"}
 
-    def run(*arguments, until=None):
-        """until: asked every now and then; once it says so, Blender and all that it has started are killed."""
+    def run(*arguments, until=None, end=lambda process: os.killpg(process.pid, signal.SIGKILL)):
+        """until: asked every now and then; once it says so, `end` is done to the process, once.
+
+        By default, Blender and all that it has started are killed.
+        """
         process = subprocess.Popen(
             [executable, *map(str, arguments)],
             env=environment,
@@ -44,7 +47,8 @@ def blender(request, zips, tmp_path_factory):  # noqa: F811
                 if process.poll() is not None:
                     break
                 if until():
-                    os.killpg(process.pid, signal.SIGKILL)
+                    end(process)
+                    break
                 time.sleep(0.01)
             said, complained = process.communicate(timeout=300)
         finally:
@@ -80,6 +84,19 @@ def scene(blender, tmp_path_factory):
     made = blender("-b", "--factory-startup", "--python-exit-code", 1, "--python", HERE / "make_scene.py", "--", path)
     assert made.returncode == 0, made.stdout + made.stderr
     return path
+
+
+def _processes(folder, helpers):
+    """The numbers of the processes of a run whose files are in a folder: those that help, or those that lead."""
+    lines = {int(path.parent.name): _line(path) for path in Path("/proc").glob("[0-9]*/cmdline")}
+    return [n for n, line in lines.items() if os.fsencode(folder) in line and (b"--helps" in line) == helpers]
+
+
+def _line(path):
+    try:
+        return path.read_bytes()
+    except OSError:  # it has just ended
+        return b""
 
 
 def test_the_operator_in_the_installed_extension(blender, tmp_path):
@@ -189,6 +206,57 @@ def test_two_processes_on_one_file_are_killed_and_taken_up_again(blender, tmp_pa
     assert len(records) == 12 and sum(record["earlier"] for record in records) == done
     assert blender(*command, "--output", alone).returncode == 0
     assert (tmp_path / "out.obj").read_text().replace("out.mtl", "alone.mtl") == alone.read_text()
+
+
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_ctrl_c_ends_all_processes_after_the_curves_in_hand(blender, tmp_path, jobs):
+    scene, report, journal = tmp_path / "scene.blend", tmp_path / "report.json", tmp_path / ".tessera" / "out.obj"
+    blender("-b", "--factory-startup", "--python", HERE / "make_scene.py", "--", scene, 30)
+    words = ("mesh", "--edge-length", 0.1, "--output", tmp_path / "out.obj", "--jobs", jobs, "--report", report)
+
+    def some_are_done():
+        return any(path.stat().st_size for path in journal.glob("*.jsonl"))
+
+    def press(process):
+        os.killpg(process.pid, signal.SIGINT)  # as a terminal does
+
+    command = ("-b", scene, "--command", "tessera", *words)
+    ran = blender(*command, until=some_are_done, end=press)
+    assert ran.returncode == 130, ran.stdout + ran.stderr
+    assert "tessera: stopped by Ctrl-C: the same command with --resume goes on" in ran.stderr
+    assert "another takes its place" not in ran.stderr and not (tmp_path / "out.obj").exists()
+    assert not _processes(tmp_path, helpers=True) and not list(journal.glob("run-*/"))
+    stopped = json.loads(report.read_text())
+    assert stopped["stopped"] and 0 < stopped["counts"]["meshed"] < 30
+    assert blender(*command, "--resume").returncode == 0
+    records = json.loads(report.read_text())["curves"]
+    assert len(records) == 30 and sum(record["earlier"] for record in records) == stopped["counts"]["meshed"]
+
+
+def test_helpers_of_a_run_that_was_killed_leave_the_next_run_alone(blender, tmp_path):
+    """They have a file each in hand, which the next run makes, too."""
+    inputs, outputs, report = tmp_path / "in", tmp_path / "out", tmp_path / "report.json"
+    inputs.mkdir()
+    blender("-b", "--factory-startup", "--python", HERE / "make_scene.py", "--", inputs / "a.blend", 30)
+    (inputs / "b.blend").write_bytes((inputs / "a.blend").read_bytes())
+    words = ("mesh", inputs, "--output", outputs, "--format", "obj", "--edge-length", 0.1, "--jobs", 2)
+
+    def both_are_begun():
+        return len([path for path in outputs.glob(".tessera/*/*.jsonl") if path.stat().st_size]) == 2
+
+    left = []
+
+    def kill(_):
+        for number in _processes(tmp_path, helpers=False):
+            os.kill(number, signal.SIGKILL)
+        left.extend(_processes(tmp_path, helpers=True))
+
+    command = ("-b", "--command", "tessera", *words)
+    blender(*command, until=both_are_begun, end=kill)
+    ran = blender(*command, "--resume", "--report", report)
+    assert ran.returncode == 0, ran.stdout + ran.stderr
+    records = json.loads(report.read_text())["curves"]
+    assert len(left) == 2 and len(records) == 60 and any(record["earlier"] for record in records)
 
 
 @pytest.mark.parametrize("times", [1, 2])

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
 from ..options import add_options, settings_from
 from ..settings import Settings
-from .files import FORMATS, Job, jobs_of
+from .files import FORMATS, Job, absolute, identity, jobs_of
 
 _EXAMPLES = """examples:
   every curve and text of a scene, beside them in a copy of the file:
@@ -23,7 +24,7 @@ _EXAMPLES = """examples:
   the same again after it was stopped, or after some drawings were mended:
     blender -b --command tessera mesh drawings --output meshes --format glb --jobs 4 --report report.json --resume
 
-exit status: 0 all were meshed, 1 some failed or nothing was there, 2 the command was not understood
+exit status: 0 all were meshed, 1 some failed or nothing was there, 2 the command was not understood, 130 Ctrl-C
 """
 
 
@@ -54,13 +55,13 @@ def parse(words: list[str]) -> Request:
     options = _parser().parse_args(words)
     if options.jobs < 1:
         raise UsageError("--jobs is a number of processes, 1 or more")
-    report = Path(options.report).expanduser().absolute() if options.report else None
-    if report and not report.parent.is_dir():
-        raise UsageError(f"there is no folder '{report.parent}' for the report")
     try:
         jobs = jobs_of(options.inputs, options.output, options.format)
     except ValueError as error:
         raise UsageError(str(error)) from error
+    report = None if options.report is None else absolute(options.report)
+    if report is not None:
+        _check_report(report, jobs)
     return Request(
         jobs=tuple(jobs),
         settings=settings_from(options),
@@ -72,6 +73,17 @@ def parse(words: list[str]) -> Request:
         helps=Path(options.helps) if options.helps else None,
         alone=options.alone,
     )
+
+
+def _check_report(report: Path, jobs: list[Job]) -> None:
+    """Raises UsageError where it could not be written, or would take another file's place."""
+    if not os.path.isdir(report.parent):
+        raise UsageError(f"there is no folder '{report.parent}' for the report")
+    if os.path.isdir(report):
+        raise UsageError(f"'{report}' is a folder: give --report a file")
+    others = {identity(path) for job in jobs for path in (job.source, job.target) if path}
+    if identity(report) in others:
+        raise UsageError(f"'{report}' is an input or the output, and --report would write over it: give another file")
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 import sys
 import time
+from pathlib import Path
 
 from .records import Record
 
@@ -13,17 +15,27 @@ INTERVAL = 5.0
 
 def say(text: str) -> None:
     """A line on standard error."""
-    print(f"tessera: {text}", file=sys.stderr, flush=True)
+    print(_one_line(f"tessera: {text}"), file=sys.stderr, flush=True)
 
 
 def show(record: Record) -> None:
     """The line of a curve, and its warnings."""
     if record.status == "failed":
-        print(record.line, file=sys.stderr, flush=True)
+        print(_one_line(record.line), file=sys.stderr, flush=True)
         return
-    print(record.line, flush=True)
+    print(_one_line(record.line), flush=True)
     for warning in record.warnings:
-        print(f"{record.name}: warning: {warning}", file=sys.stderr, flush=True)
+        print(_one_line(f"{record.name}: warning: {warning}"), file=sys.stderr, flush=True)
+
+
+def plan(name: str, what: str, target: Path) -> None:
+    """The line of a curve that would be meshed."""
+    print(_one_line(f"{name}: {what} -> {target}"), flush=True)
+
+
+def _one_line(text: str) -> str:
+    """What would end the line or move the cursor, such as in an object's name, is shown as it is written in Python."""
+    return re.sub(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]", lambda found: ascii(found[0])[1:-1], text)
 
 
 class Progress:

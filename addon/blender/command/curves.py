@@ -49,7 +49,7 @@ def read_curve(job: Job, obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, 
     except meshing.Failure as failure:
         return Curve(record=_failure(job, name, failure, request.objects is not None))
     except Exception as error:
-        return Curve(record=_internal(job, name, error))
+        return Curve(record=internal(job, name, error))
     return Curve(task, seconds=time.perf_counter() - start)
 
 
@@ -114,7 +114,7 @@ def _mesh(job: Job, curves: list[Curve], journal: Journal) -> list[Curve]:
         elif isinstance(outcome, meshing.Failure):
             record = _failure(job, name, outcome, named=True)
         else:
-            record = _internal(job, name, outcome)
+            record = internal(job, name, outcome)
         meshed.append(Curve(curve.task, record, journal.add(_key(curve.task), asdict(record), arrays)))
     return meshed
 
@@ -160,8 +160,8 @@ def _failure(job: Job, name: str, failure: meshing.Failure, named: bool) -> Reco
     )
 
 
-def _internal(job: Job, name: str, error: Exception) -> Record:
-    """An error of the add-on's own: shown in full, and the other curves go on."""
+def internal(job: Job, name: str | None, error: Exception) -> Record:
+    """An error of the add-on's own, with an object or (None) a whole file: shown in full, and the others go on."""
     traceback.print_exception(error)
     return failed(job.name, name, "internal", f"{type(error).__name__}: {error}")
 

@@ -25,7 +25,7 @@ def open_file(source: Path | None) -> None:
                 _open_svg(source)
             else:
                 bpy.ops.wm.open_mainfile(filepath=str(source), load_ui=False)
-        except RuntimeError as error:
+        except (RuntimeError, AttributeError) as error:  # AttributeError: this Blender has no importer
             raise InputError(f"'{source}' cannot be read: {_last_line(error)}") from error
     if bpy.context.mode != "OBJECT" and bpy.context.object is not None:
         bpy.ops.object.mode_set(mode="OBJECT")  # a file that was saved in Edit Mode
@@ -56,6 +56,6 @@ def _open_svg(source: Path) -> None:
         raise InputError(f"'{source}' cannot be read: it is no SVG file")
 
 
-def _last_line(error: RuntimeError) -> str:
+def _last_line(error: Exception) -> str:
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
     return lines[-1].removeprefix("Error: ").rstrip(".") if lines else repr(error)

@@ -26,7 +26,7 @@ def write_file(target: Path, made: list[bpy.types.Object]) -> None:
         if target.suffix.lower() == ".blend":
             bpy.ops.wm.save_as_mainfile(filepath=str(target), check_existing=False, copy=True)
             return
-        folder = folder_of(target) / "new"
+        folder = folder_of(target) / f"new-{os.getpid()}"  # an earlier run's process may still have one
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
         _select(made)

@@ -80,13 +80,16 @@ def summary(records: list[Record], seconds: float) -> str:
     return f"{said or 'nothing was there'}, {seconds:.1f} s"
 
 
-def write_report(path: Path, records: list[Record], settings: Settings, seconds: float, blender: str) -> None:
-    """All records as JSON. Raises OSError where it cannot be written."""
+def write_report(
+    path: Path, records: list[Record], settings: Settings, seconds: float, blender: str, stopped: str | None
+) -> None:
+    """All records as JSON; stopped: why the run has not done everything. Raises OSError where it cannot be written."""
     counts = Counter(record.status for record in records)
     report = {
         "blender": blender,
         "settings": asdict(settings),
         "seconds": seconds,
+        "stopped": stopped,
         "counts": {status: counts[status] for status in ("meshed", "failed", "passed over")},
         "curves": [asdict(record) for record in records],
     }

@@ -9,16 +9,17 @@ from collections.abc import Iterator
 
 import bpy
 
-from . import console
+from . import console, interrupts
 from .arguments import Request, UsageError, parse
 from .claims import Claims, RunIsOver
+from .files import identity
 from .inputs import InputError, choose
-from .journal import folder_of, forget
+from .journal import folder_of, forget, is_taken, take
 from .records import Record, exit_status, failed, summary, write_report
 
 
 def run(arguments: list[str]) -> int:
-    """Exit status: 0 all were meshed, 1 some failed or there was nothing, 2 usage."""
+    """Exit status: 0 all were meshed, 1 some failed or there was nothing, 2 usage, 130 stopped by Ctrl-C."""
     try:
         request = parse(arguments)
         _check(request)
@@ -30,14 +31,21 @@ def run(arguments: list[str]) -> int:
     from ... import tessera  # here, so that enabling the add-on does not load the mesher
 
     try:
-        if request.helps is not None:
-            return _help(request)
-        return _plan(request) if request.dry_run else _lead(request, arguments)
-    except tessera.RuntimeProblem as problem:
-        console.say(str(problem))
-    except OSError as error:  # of the journal: the disk is full, or the folder cannot be written to
-        console.say(f"stopped, as '{error.filename}' cannot be written: {error.strerror}")
-    return 1
+        with interrupts.heeded():
+            if request.helps is not None:
+                return _help(request)
+            return _plan(request) if request.dry_run else _lead(request, arguments)
+    except (tessera.RuntimeProblem, interrupts.Interrupted, RunIsOver, OSError) as error:
+        console.say(_reason(error))
+        return 130 if isinstance(error, interrupts.Interrupted) else 1
+
+
+def _reason(error: Exception) -> str:
+    """Why the run was stopped, for the user."""
+    if isinstance(error, OSError):  # of the journal: the disk is full, or the folder cannot be read or written
+        where = f" at '{error.filename}'" if error.filename else ""
+        return f"stopped{where}: {error.strerror}; once that is mended, the same command with --resume goes on"
+    return str(error)
 
 
 def _check(request: Request) -> None:
@@ -46,7 +54,19 @@ def _check(request: Request) -> None:
 
     if request.workers > 1 and not workers.can_start():
         raise UsageError("--jobs needs the Blender program: the bpy module cannot be started again")
-    if request.objects is not None and request.jobs[0].source is None:
+    if request.jobs[0].source is None:
+        _check_open_file(request)
+    result = request.settings.result
+    if request.settings.keep_linked and result != "NEW" and request.helps is None:
+        console.say(f"warning: --keep-linked has no effect with --result {result.lower()}: leave one of them out")
+
+
+def _check_open_file(request: Request) -> None:
+    """Raise where the open file is an input, and would be written over, or has not the objects that are named."""
+    for option, path in (("--output", request.jobs[0].target), ("--report", request.report)):
+        if path and bpy.data.filepath and identity(path) == identity(bpy.data.filepath):
+            raise UsageError(f"'{path}' is the open file, and would be written over: give another {option}")
+    if request.objects is not None:
         choose(request.objects)
 
 
@@ -72,41 +92,53 @@ def _lead(request: Request, words: list[str]) -> int:
     """Mesh everything, in this process or with others, and say what became of it."""
     start = time.monotonic()
     claims = _prepare(request)
-    folder = claims.folder
-    if folder is not None:
+    try:
+        records = _mesh(request, words, claims)
+    except RunIsOver:  # and the report is the later run's, too
+        raise
+    except Exception as error:
+        from .batch import so_far
+
+        records = [record for job in request.jobs for record in so_far(job, request, claims)]
+        _report(request, records, time.monotonic() - start, _reason(error))
+        raise
+    finally:
+        if claims.folder is not None:
+            claims.remove()
+    seconds = time.monotonic() - start
+    if exit_status(records) == 0 and not request.resume:
+        for job in request.jobs:
+            if is_taken(job.target, claims.run):
+                forget(job.target)
+    console.say(summary(records, seconds))
+    return exit_status(records) if _report(request, records, seconds) else 1
+
+
+def _mesh(request: Request, words: list[str], claims: Claims) -> list[Record]:
+    if claims.folder is not None:
         from . import workers
 
         claims = workers.run_workers(request, words, claims)
-    records = list(_records(request, claims))
-    seconds = time.monotonic() - start
-    if folder is not None:
-        for each in {folder, claims.folder}:
-            shutil.rmtree(each)
-    if exit_status(records) == 0 and not request.resume:
-        for job in request.jobs:
-            forget(job.target)
-    console.say(summary(records, seconds))
-    return _reported(request, records, seconds)
+    return list(_records(request, claims))
 
 
 def _prepare(request: Request) -> Claims:
     """The folder to write to is made, and an earlier run's journals are removed, or its processes' claims alone."""
     request.jobs[0].target.parent.mkdir(exist_ok=True)
-    run = f"{time.time_ns():x}-{os.getpid():x}"
-    first = folder_of(request.jobs[0].target)
-    for old in first.glob("run-*/"):  # folders
-        shutil.rmtree(old, ignore_errors=True)
-    for old in first.glob("*.log"):
-        old.unlink()
-    if not request.resume:
-        for job in request.jobs:
-            forget(job.target)
+    run = f"run-{time.time_ns():x}-{os.getpid():x}"
     for job in request.jobs:
-        folder_of(job.target).mkdir(parents=True, exist_ok=True)
+        folder = folder_of(job.target)
+        if not request.resume:
+            forget(job.target)
+        for old in (*folder.glob("run-*/"), *folder.glob("new-*/")):
+            shutil.rmtree(old, ignore_errors=True)
+        for old in folder.glob("*.log"):
+            old.unlink()
+        take(job.target, run)
     if request.workers == 1:
         return Claims(run)
-    claims = Claims(f"run-{run}", first / f"run-{run}")
-    claims.folder.mkdir(parents=True)
+    claims = Claims(run, folder_of(request.jobs[0].target) / run)
+    claims.folder.mkdir()
     return claims
 
 
@@ -127,13 +159,13 @@ def _records(request: Request, claims: Claims) -> Iterator[Record]:
             progress.reached(number + 1)
 
 
-def _reported(request: Request, records: list[Record], seconds: float) -> int:
-    """Write the report, if one is wanted; the exit status."""
-    status = exit_status(records)
-    if request.report is not None:
-        try:
-            write_report(request.report, records, request.settings, seconds, bpy.app.version_string)
-        except OSError as error:
-            console.say(f"the report was not written: {error}")
-            status = 1
-    return status
+def _report(request: Request, records: list[Record], seconds: float, stopped: str | None = None) -> bool:
+    """Write the report, if one is wanted; whether it is as it should be."""
+    if request.report is None:
+        return True
+    try:
+        write_report(request.report, records, request.settings, seconds, bpy.app.version_string, stopped)
+    except OSError as error:
+        console.say(f"the report was not written: {error}")
+        return False
+    return True

@@ -12,7 +12,7 @@ import time
 
 import bpy
 
-from . import console
+from . import console, interrupts
 from .arguments import Request
 from .batch import fill_journal, mesh_file
 from .claims import Claims
@@ -54,17 +54,25 @@ def _run(request: Request, command: list[str], claims: Claims) -> bool:
     count = min(request.workers, len(request.jobs)) if _by_files(request) else request.workers
     what = "files" if _by_files(request) else "curves"
     progress = console.Progress(what, len(request.jobs) if _by_files(request) else None)
-    processes, restarts = [_start(command, claims, number) for number in range(count)], _RESTARTS
-    while processes:
-        time.sleep(_PAUSE)
-        claims.lead()
-        progress.reached(max(0, claims.count() - len(processes)))
-        for process in [process for process in processes if process.poll() is not None]:
-            processes.remove(process)
-            if process.returncode and restarts:
-                restarts -= 1
-                console.say(f"a process ended with status {process.returncode}; another takes its place")
-                processes.append(_start(command, claims, count + _RESTARTS - restarts))
+    processes, restarts = [], _RESTARTS
+    try:
+        for number in range(count):
+            processes.append(_start(command, claims, number))
+        while processes:
+            time.sleep(_PAUSE)
+            interrupts.check()
+            claims.lead()
+            progress.reached(max(0, claims.count() - len(processes)))
+            for process in [process for process in processes if process.poll() is not None]:
+                processes.remove(process)
+                if process.returncode and restarts:
+                    restarts -= 1
+                    console.say(f"a process ended with status {process.returncode}; another takes its place")
+                    processes.append(_start(command, claims, count + _RESTARTS - restarts))
+    finally:
+        claims.end()
+        for process in processes:  # if this one is stopped: each has its curves in hand
+            process.wait()
     return restarts < _RESTARTS
 
 
