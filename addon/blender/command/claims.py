@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 # Seconds without a sign of the leading process after which helpers stop.
-PATIENCE = 60.0
+PATIENCE = 15.0
 
 
 class RunIsOver(Exception):
