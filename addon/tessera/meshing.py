@@ -44,10 +44,10 @@ def mesh(
     loops: (k, 2) arrays, in any winding and order: outer contours, holes and islands in them by the even-odd rule.
     edge_length: the target, in the loops' unit. boundary: "resample" places vertices on the given polylines at the
     target edge length, keeping their corners, which turn by more than corner_angle degrees (of those nearer to each
-    other than a twentieth of the target, one); "keep" keeps exactly the given vertices and adds none on the contour. passes: how often in a row NN2 is asked for better places of all inner
-    vertices; 0 makes a draft, whose poor patches are not meshed again either. flips: a last pass exchanges edges where
-    that raises the worse quality of the two elements beside them. smooth: how often every inner vertex may move after
-    that, to better the poorest elements.
+    other than a twentieth of the target, one); "keep" keeps exactly the given vertices and adds none on the contour.
+    passes: how often in a row NN2 is asked for better places of all inner vertices; 0 makes a draft, whose poor patches
+    are not meshed again either. flips: a last pass exchanges edges where that raises the worse quality of the two
+    elements beside them. smooth: how often every inner vertex may move after that, to better the poorest elements.
 
     points: (p, 2), inside the domain, that must be vertices of the mesh. lines: polylines (k, 2), closed if they end
     where they start, whose course must be edges of the mesh; their vertices are placed as those of the contours. They
