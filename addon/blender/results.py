@@ -54,7 +54,8 @@ def select(
     for source in sources:
         source.select_set(False)
     context.view_layer.update()  # before that, it does not know of new collections
-    shown = [obj for obj in made if context.view_layer.objects.get(obj.name) == obj]
+    there = set(context.view_layer.objects)
+    shown = [obj for obj in made if obj in there]
     for obj in shown:
         obj.select_set(True)
     if shown:

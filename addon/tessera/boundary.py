@@ -12,7 +12,8 @@ from .sampling import cut
 # A vertex is a corner where the contour turns by more than this; a regular polygon of 12 sides, which turns by 30
 # degrees at its vertices, is still a coarse circle.
 CORNER_ANGLE = np.radians(32.0)
-_ONE_CORNER = 0.05  # of an edge: corners that are nearer to each other are one
+# Corners that are nearer to each other than this share of an edge, and of the whole polyline, are one.
+_ONE_CORNER, _OF_ALL = 0.05, 1e-3
 _HALVED = 24  # edges from which it is worth while that a loop's boundary can be halved
 # Numbers of edges that are as close to two whole numbers are rounded down, whatever the last bit says.
 _TIE = 1e-9
@@ -41,11 +42,11 @@ def resample_loops(
     without it each loop is a domain of its own. corner_angle: in radians.
 
     The vertices lie on the given polyline. Corners (turning by more than the corner angle) stay, but of those that are
-    closer to each other than a twentieth of an edge only one, as elements there could be nothing but thin. Between two
-    of them are as many edges as come near `edge_length`, a number that is easily halved if there are many, equally long
-    along the polyline, or as long as it is there. A loop without corners starts at its leftmost vertex, wherever its
-    list starts. Where such spacing would make polygons meet, or put one inside another or out of it that was not,
-    given vertices are inserted until it does not.
+    closer to each other than a twentieth of an edge, and a thousandth of the polyline, only one: elements there could
+    be nothing but thin. Between two of them are as many edges as come near `edge_length`, a number that is easily
+    halved if there are many, equally long along the polyline, or as long as it is there. A loop without corners starts
+    at its leftmost vertex, wherever its list starts. Where such spacing would make polygons meet, or put one inside
+    another or out of it that was not, given vertices are inserted until it does not.
     """
     length = np.array([len(loop) for loop in loops])
     group = np.arange(len(loops)) if domain is None else np.asarray(domain)
@@ -198,26 +199,27 @@ def resampled_places(
     `vertices_as_knots`; fewest: edges that there are at least.
     """
     arc_start = np.flatnonzero(breaks)
-    at = passed[np.searchsorted(position, arc_start)] / an_edge
-    arcs = np.diff(at, append=passed[-1] / an_edge)
-    if (arcs < _ONE_CORNER).any():
-        arc_start, arcs = _distinct_corners(arc_start, at, passed[-1] / an_edge)
-    n_edges = count_edges(arcs, fewest)
+    at = passed[np.searchsorted(position, arc_start)]
+    nearest = min(_ONE_CORNER * an_edge, _OF_ALL * passed[-1])
+    if (np.diff(at, append=passed[-1]) < nearest).any():
+        distinct = _distinct_corners(at, passed[-1], nearest)
+        arc_start, at = arc_start[distinct], at[distinct]
+    n_edges = count_edges(np.diff(at, append=passed[-1]) / an_edge, fewest)
     return even_spacing(arc_start, position, passed, halvable(n_edges) if n_edges.sum() >= _HALVED else n_edges)
 
 
-def _distinct_corners(arc_start: np.ndarray, at: np.ndarray, end: float) -> tuple[np.ndarray, np.ndarray]:
-    """Corners (a,) without those that are as near to one that stays as to be one with it; the arcs between them (b,).
+def _distinct_corners(at: np.ndarray, end: float, nearest: float) -> list[int]:
+    """Those of corners (a,) that are no nearer to each other than this; the first stays, and so does the end.
 
-    at, end: how far along the polyline they are, and it is, in edges. The first stays, and so does what is at the end.
+    at, end: how far along the polyline they are, and it is.
     """
     stay = [0]
     for number in range(1, len(at)):
-        if at[number] - at[stay[-1]] >= _ONE_CORNER:
+        if at[number] - at[stay[-1]] >= nearest:
             stay.append(number)
-    if len(stay) > 1 and end - at[stay[-1]] < _ONE_CORNER:
+    if len(stay) > 1 and end - at[stay[-1]] < nearest:
         stay.pop()
-    return arc_start[stay], np.diff(at[stay], append=end)
+    return stay
 
 
 def _points_at(points: np.ndarray, length: np.ndarray, loop: np.ndarray, position: np.ndarray) -> np.ndarray:

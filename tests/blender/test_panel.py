@@ -126,7 +126,7 @@ def test_linked_meshes_and_failures_have_panels():
 def test_what_cannot_be_selected_is_shown():
     select(text("a"))
     with pytest.raises(RuntimeError, match=r"Text 'Text': .*triangles.*a larger Shortest Edge"):
-        bpy.ops.tessera.mesh_curve(edge_length=0.1, use_distance=True, distance_length=1e-5)
+        bpy.ops.tessera.mesh_curve(edge_length=0.1, use_distance=True, distance_length=1e-9)
     buttons = drawn(bpy.types.TESSERA_PT_failures).named("operator")
     assert [button.more["text"] for button in buttons] == ["Show the Place"]
 
