@@ -26,7 +26,8 @@ def uncrossed(loops: Sequence[ArrayLike]) -> tuple[list[np.ndarray], np.ndarray]
     """The outlines of loops that cross or touch themselves or each other, and all others as they are.
 
     loops: (k, 2) float64 each, closed, without repeating the first point, finite. Returns loops, and of each the number
-    (l,) int64 of the given one that most of it is of. Where crossings cannot be told apart, their loops stay.
+    (l,) int64 of the given one that most of it is of. Where crossings cannot be told apart, or leave
+    nothing, their loops stay.
     """
     loops = [np.asarray(loop, dtype=np.float64) for loop in loops]
     start, end = edges_of(loops)
@@ -52,7 +53,10 @@ def _outlines(loops: list[np.ndarray]) -> tuple[list[np.ndarray], np.ndarray]:
         curves = _divided_at_crossings(curves)
         noded = node_curves(curves, [True] * len(curves), tolerance)
         if isinstance(noded, Noded):
-            return _around(noded, len(loops), tolerance)
+            outlines, number = _around(noded, len(loops), tolerance)
+            if len(outlines):
+                return outlines, number
+            break
     return loops, np.arange(len(loops))
 
 

@@ -51,6 +51,12 @@ def test_what_crosses_nothing_stays_as_it_is():
     assert of.tolist() == [0, 1, 2] and all(np.array_equal(a, b) for a, b in zip(alone, loops, strict=False))
 
 
+def test_what_encloses_nothing_stays_as_it_is():
+    there_and_back = np.array([[0.0, 0], [2, 0], [1, 0]])
+    made, of = uncrossed([there_and_back, SQUARE + 5])
+    assert sorted(of.tolist()) == [0, 1] and any(np.array_equal(loop, there_and_back) for loop in made)
+
+
 @settings(deadline=None, max_examples=30)
 @given(seeds, st.integers(1, 3), st.integers(3, 8), st.sampled_from([1.0, 1e-3, 1e4]))
 def test_any_scribble_becomes_the_outlines_of_what_it_winds_around(seed, n_loops, n_points, scale):
