@@ -89,7 +89,7 @@ def _around(noded: Noded, n_loops: int, tolerance: float) -> tuple[list[np.ndarr
     of = np.empty(len(noded.edges), dtype=np.int64)
     of[noded.edge] = noded.curve
     outlines, number = [], []
-    for part in np.split(walk, np.cumsum(size)[:-1]):
+    for part in np.split(walk, np.cumsum(size)[:-1]) if len(size) else ():
         points = noded.points[tails[part]]
         x, y = (points - points[0]).T
         area = 0.5 * abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1)))

@@ -72,7 +72,7 @@ def test_any_scribble_becomes_the_outlines_of_what_it_winds_around(seed, n_loops
     assert np.array_equal(inside[clear], (winding(places, loops) != 0)[clear])
 
 
-@settings(deadline=None, max_examples=30)
+@settings(deadline=None, max_examples=8)
 @given(seeds)
 def test_it_can_be_meshed(seed):
     rng = np.random.default_rng(seed)
