@@ -15,7 +15,9 @@ def evaluated_object(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> t
     OutlineError "not-evaluated" then, and "not-finite" for a transform that is no number.
     """
     evaluated = obj.evaluated_get(depsgraph)
-    if not evaluated.is_evaluated and _depends(obj):
+    # What is referred to is evaluated wherever it is, but for its modifiers.
+    left_out = _is_modified(obj) if evaluated.is_evaluated else _depends(obj)
+    if left_out and _is_off(obj, depsgraph.view_layer):
         message = (
             "It is switched off in this view layer, so that Blender does not evaluate its modifiers, parent or "
             "animation. Switch it and its collection on, and hide it by the eye (H) instead."
@@ -28,6 +30,25 @@ def evaluated_object(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> t
     return evaluated, world
 
 
+def _is_off(obj: bpy.types.Object, view_layer: bpy.types.ViewLayer) -> bool:
+    """Whether an object is not in the view layer, or switched off there, itself or with all its collections."""
+    if obj.visible_get(view_layer=view_layer):
+        return False
+    waiting = [] if obj.hide_viewport else [view_layer.layer_collection]
+    while waiting:
+        layer = waiting.pop()
+        if layer.collection.hide_viewport:
+            continue
+        if not layer.exclude and layer.collection.objects.get(obj.name) == obj:
+            return False
+        waiting += layer.children
+    return True
+
+
+def _is_modified(obj: bpy.types.Object) -> bool:
+    return any(modifier.show_viewport for modifier in obj.modifiers)
+
+
 def _depends(obj: bpy.types.Object) -> bool:
     """Whether more than the object's own data and transform says what it looks like."""
     data = obj.data
@@ -35,7 +56,7 @@ def _depends(obj: bpy.types.Object) -> bool:
         obj.parent is not None
         or shows_collection(obj)
         or len(obj.constraints) > 0
-        or any(modifier.show_viewport for modifier in obj.modifiers)
+        or _is_modified(obj)
         or any(getattr(one, "animation_data", None) is not None for one in (obj, data))
         or any(getattr(data, name, None) is not None for name in ("shape_keys", "follow_curve"))
     )

@@ -105,10 +105,11 @@ def remember_quality(obj: bpy.types.Object, made: list[Meshed]) -> None:
 
 
 def shape_of(mesh: bpy.types.Mesh) -> str:
-    """A word that is the same as long as nobody edits the mesh; of its counts and coordinates."""
-    points = np.empty(3 * len(mesh.vertices), dtype=np.float32)
+    """A word that is the same as long as nobody edits the mesh; of its coordinates and of what its faces connect."""
+    points, corners = np.empty(3 * len(mesh.vertices), dtype=np.float32), np.empty(len(mesh.loops), dtype=np.int32)
     mesh.vertices.foreach_get("co", points)
-    return f"{len(mesh.polygons)} {zlib.crc32(points)}"
+    mesh.loops.foreach_get("vertex_index", corners)
+    return f"{len(mesh.polygons)} {zlib.crc32(corners, zlib.crc32(points))}"
 
 
 def piece_quality(piece: Piece) -> np.ndarray:

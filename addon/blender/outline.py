@@ -70,7 +70,9 @@ class Outline:
 
     @property
     def size(self) -> float:
-        """The longer side of the bounding box of the largest loop, in world units."""
+        """The longer side of the bounding box of the largest loop, or of all regions together, in world units."""
+        if self.regions is not None:
+            return float(np.ptp(np.concatenate(self.loops), axis=0).max())
         return max(float(np.ptp(loop, axis=0).max()) for loop in self.loops)
 
     @property

@@ -6,13 +6,13 @@ together, run around a number of times other than zero (the non-zero rule, by wh
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .contour import edges_of
-from .crossings import crossing_pairs
+from .crossings import close_pairs, crossing_pairs, gaps
 from .faces import find_faces
 from .graph import connected, graph_faces
 from .noding import TOLERANCE, Noded, node_curves
@@ -32,22 +32,31 @@ def uncrossed(loops: Sequence[ArrayLike]) -> tuple[list[np.ndarray], np.ndarray]
     loops = [np.asarray(loop, dtype=np.float64) for loop in loops]
     start, end = edges_of(loops)
     of = np.repeat(np.arange(len(loops)), [len(loop) for loop in loops])
-    pairs = crossing_pairs(start, end, np.zeros(len(start), dtype=np.int64))
+    tolerance = TOLERANCE * float(np.ptp(start, axis=0).max())
+    pairs = np.concatenate(
+        [crossing_pairs(start, end, np.zeros(len(start), dtype=np.int64)), *_near(start, end, of, tolerance)]
+    )
     if not len(pairs):
         return loops, np.arange(len(loops))
     group, meets = connected(len(loops), of[pairs]), np.unique(of[pairs])
     apart = np.setdiff1d(np.arange(len(loops)), meets)
     made, number = [loops[k] for k in apart], [apart]
     for together in (meets[group[meets] == first] for first in np.unique(group[meets])):
-        outlines, own = _outlines([loops[k] for k in together])
+        outlines, own = _outlines([loops[k] for k in together], tolerance)
         made += outlines
         number.append(together[own])
     return made, np.concatenate(number)
 
 
-def _outlines(loops: list[np.ndarray]) -> tuple[list[np.ndarray], np.ndarray]:
-    """`uncrossed`, of loops that all hang together."""
-    tolerance = TOLERANCE * float(np.ptp(np.concatenate(loops), axis=0).max())
+def _near(start: np.ndarray, end: np.ndarray, of: np.ndarray, tolerance: float) -> Iterator[np.ndarray]:
+    """Pairs (k, 2) of edges (n, 2) of different loops (n,) that are as near to each other as to be taken to touch."""
+    for pairs in close_pairs(start, end, np.zeros(len(start), dtype=np.int64), tolerance):
+        pairs = pairs[of[pairs[:, 0]] != of[pairs[:, 1]]]
+        yield pairs[gaps(start, end, pairs)[0] <= tolerance]
+
+
+def _outlines(loops: list[np.ndarray], tolerance: float) -> tuple[list[np.ndarray], np.ndarray]:
+    """`uncrossed`, of loops that all hang together; what is nearer to each other than a tolerance touches."""
     curves = loops
     for _ in range(_MOST_TRIES):
         curves = _divided_at_crossings(curves)

@@ -343,3 +343,27 @@ def test_a_linked_mesh_that_is_meshed_in_place_is_linked_no_longer(square):
     assert fine > 200 and mesh.tessera.source is None and not mesh.tessera.automatic
     move(curve, 1, 2.0)
     assert len(mesh.data.polygons) == fine == mesh.tessera.n_triangles and right(mesh) == 1.0
+
+
+@pytest.mark.parametrize("how", ["exclude", "object", "collection"])
+def test_a_source_that_is_switched_off_is_not_read_without_its_modifiers(square, how):
+    curve, mesh = square
+    collection = bpy.data.collections.new("Off")
+    bpy.context.scene.collection.children.link(collection)
+    for old in curve.users_collection:
+        old.objects.unlink(curve)
+    collection.objects.link(curve)
+    curve.modifiers.new("Array", "ARRAY")
+    layer = bpy.context.view_layer.layer_collection.children["Off"]
+    layer.exclude = how == "exclude"
+    curve.hide_viewport = how == "object"
+    collection.hide_viewport = how == "collection"
+    select(mesh)
+    with pytest.raises(RuntimeError, match="switched off in this view layer"):
+        bpy.ops.tessera.mesh_again()
+    curve.hide_viewport = collection.hide_viewport = False
+    layer = bpy.context.view_layer.layer_collection.children["Off"]
+    layer.exclude, layer.hide_viewport = False, True  # by the eye
+    bpy.context.view_layer.update()
+    assert bpy.ops.tessera.mesh_again() == {"FINISHED"}
+    assert right(mesh) == 2.0

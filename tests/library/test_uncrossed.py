@@ -31,6 +31,7 @@ def winding(points, loops):
         ([SQUARE[::-1], SQUARE[::-1] + 1], [7]),
         ([SQUARE, SQUARE + [1, 0]], [6]),  # with edges along each other
         ([SQUARE, SQUARE + [2, 0]], [8]),  # beside each other
+        ([SQUARE, SQUARE + [2 + 1e-7, 0.5]], [8]),  # all but
         ([PENTAGRAM], [1.1225699414489634]),
         ([SQUARE[[0, 2, 1, 3]]], [1, 1]),  # a bow tie
         ([SQUARE, SQUARE[::-1] + 1], [3, 3]),  # the second takes away from the first
