@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 
 import bpy
 import numpy as np
@@ -24,8 +25,8 @@ def read_curve(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> l
     """
     with _control_points(evaluated, depsgraph) as curve:
         drawn = [_polyline(spline, number) for number, spline in enumerate(curve.splines, start=1)]
-    if evaluated.type == "FONT":  # some fonts leave single points in their letters, which nobody could remove
-        drawn = [polyline for polyline in drawn if len(polyline.points) > 2]
+        if evaluated.type == "FONT":
+            drawn = _legible(drawn, [spline.type == "POLY" for spline in curve.splines])
     if not _has_mesh_modifiers(evaluated):
         return drawn
     data = evaluated.data
@@ -47,6 +48,26 @@ def read_curve(evaluated: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> l
         Polyline(chain.points, chain.closed, spline.spline, spline.material, spline.smooth)
         for chain, spline in zip(made, drawn, strict=True)
     ]
+
+
+def _legible(drawn: list[Polyline], underlines: list[bool]) -> list[Polyline]:
+    """A text's polylines, without the single points that some fonts leave in their letters.
+
+    Underlines run around as letters do: else what both cover would be wound around zero times.
+    """
+    areas = [_swept(polyline.points) for polyline in drawn]
+    way = sum(area for area, is_underline in zip(areas, underlines, strict=True) if not is_underline)
+    return [
+        replace(polyline, points=polyline.points[::-1]) if is_underline and area * way < 0 else polyline
+        for polyline, area, is_underline in zip(drawn, areas, underlines, strict=True)
+        if len(polyline.points) > 2
+    ]
+
+
+def _swept(points: np.ndarray) -> float:
+    """Twice the area that a closed polyline (k, 3) runs around in the plane of a text, counter-clockwise."""
+    x, y = points[:, :2].T
+    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
 
 
 @contextmanager

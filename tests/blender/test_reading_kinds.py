@@ -506,3 +506,19 @@ def test_modifiers_on_an_extrusion_are_said():
     with pytest.raises(OutlineError, match="extrusion or bevel") as error:
         read(obj)
     assert error.value.reason == "not-planar"
+
+
+def test_underlines_are_united_with_letters_that_reach_them():
+    obj = text("Qgyj")
+    for character in obj.data.body_format:
+        character.use_underline = True
+    (outline,) = read(obj)
+    mesh = tessera.mesh(outline.loops, 0.05)
+    places = mesh.vertices[mesh.triangles].mean(axis=1)
+    assert not any("touch" in warning for warning in mesh.report.warnings)
+    drawn = read_curve(obj, bpy.context.evaluated_depsgraph_get())
+    underline = [polyline.points[:, :2] for polyline in drawn if len(polyline.points) == 4]
+    within = np.concatenate([line.mean(axis=0)[None] for line in underline])
+    assert len(within) == 4
+    nearest = np.linalg.norm(places - within[:, None], axis=2).min(axis=1)
+    assert nearest.max() < 0.05  # the middle of each is covered
