@@ -27,7 +27,18 @@ from .targets import Targets, read_targets, unnamed
 from .wanted import Wanted, mesh_wanted
 from .writing import Piece
 
-__all__ = ["Failure", "Meshed", "Task", "finish", "handfuls", "mesh_all", "mesh_task", "mesh_tasks", "read_task"]
+__all__ = [
+    "Failure",
+    "Meshed",
+    "Task",
+    "expected_triangles",
+    "finish",
+    "handfuls",
+    "mesh_all",
+    "mesh_task",
+    "mesh_tasks",
+    "read_task",
+]
 
 T = TypeVar("T")
 # Triangles that are meshed together: about a second's work, in which there is little left to gain by more of them.

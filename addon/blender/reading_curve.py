@@ -7,6 +7,7 @@ from dataclasses import replace
 import bpy
 import numpy as np
 
+from ..tessera.contour import signed_area
 from . import splines
 from .errors import OutlineError
 from .outline import Polyline
@@ -55,19 +56,13 @@ def _legible(drawn: list[Polyline], underlines: list[bool]) -> list[Polyline]:
 
     Underlines run around as letters do: else what both cover would be wound around zero times.
     """
-    areas = [_swept(polyline.points) for polyline in drawn]
+    areas = [signed_area(polyline.points[:, :2]) for polyline in drawn]
     way = sum(area for area, is_underline in zip(areas, underlines, strict=True) if not is_underline)
     return [
         replace(polyline, points=polyline.points[::-1]) if is_underline and area * way < 0 else polyline
         for polyline, area, is_underline in zip(drawn, areas, underlines, strict=True)
         if len(polyline.points) > 2
     ]
-
-
-def _swept(points: np.ndarray) -> float:
-    """Twice the area that a closed polyline (k, 3) runs around in the plane of a text, counter-clockwise."""
-    x, y = points[:, :2].T
-    return float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
 
 
 @contextmanager

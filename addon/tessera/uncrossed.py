@@ -11,7 +11,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .contour import edges_of
+from .budget import total_length
+from .contour import edges_of, signed_area
 from .crossings import close_pairs, crossing_pairs, gaps
 from .faces import find_faces
 from .graph import connected, graph_faces
@@ -100,9 +101,7 @@ def _around(noded: Noded, n_loops: int, tolerance: float) -> tuple[list[np.ndarr
     outlines, number = [], []
     for part in np.split(walk, np.cumsum(size)[:-1]) if len(size) else ():
         points = noded.points[tails[part]]
-        x, y = (points - points[0]).T
-        area = 0.5 * abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1)))
-        if area > tolerance * float(np.hypot(*(points - np.roll(points, 1, axis=0)).T).sum()):
+        if abs(signed_area(points)) > tolerance * total_length([points]):
             outlines.append(points)
             number.append(np.bincount(of[bounds[part]]).argmax())
     return outlines, np.array(number, dtype=np.int64)

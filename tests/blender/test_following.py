@@ -54,6 +54,17 @@ def follow(mesh):
     return mesh
 
 
+def drafted(square, timers):
+    """The curve and its mesh, which follows it and is a draft by now."""
+    curve, mesh = square
+    follow(mesh)
+    timers.run()
+    move(curve, 1, 2.0)
+    timers.run(0.1)
+    assert is_draft(mesh)
+    return curve, mesh
+
+
 def test_a_change_is_drafted_and_finished_when_the_curve_rests(square, timers):
     curve, mesh = square
     follow(mesh)
@@ -62,9 +73,9 @@ def test_a_change_is_drafted_and_finished_when_the_curve_rests(square, timers):
         move(curve, 1, x)
         assert timers.run(0.4) == ["_catch_up"]
         assert right(mesh) == x and is_draft(mesh)
-    drafted = mesh.tessera.q_mean
+    poorer = mesh.tessera.q_mean
     assert timers.run() == ["_finish"]
-    assert not is_draft(mesh) and mesh.tessera.q_mean > drafted and right(mesh) == 3.0
+    assert not is_draft(mesh) and mesh.tessera.q_mean > poorer and right(mesh) == 3.0
     assert timers.run() == []
 
 
@@ -114,13 +125,8 @@ def test_a_mesh_whose_own_changes_come_back_is_finished(square, timers, how):
 
 @pytest.mark.parametrize("how", ["switched off", "renamed", "unlinked", "saved"])
 def test_no_draft_stays(square, timers, how, tmp_path):
-    curve, mesh = square
-    follow(mesh)
-    timers.run()
-    move(curve, 1, 2.0)
-    timers.run(0.1)
-    assert is_draft(mesh)
-    drafted = mesh.tessera.q_mean
+    _, mesh = drafted(square, timers)
+    poorer = mesh.tessera.q_mean
     if how == "switched off":
         mesh.tessera.automatic = False
     elif how == "renamed":
@@ -132,7 +138,7 @@ def test_no_draft_stays(square, timers, how, tmp_path):
         bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "drafted.blend"))
         assert not is_draft(mesh)
     timers.run()
-    assert not is_draft(mesh) and mesh.tessera.q_mean > drafted
+    assert not is_draft(mesh) and mesh.tessera.q_mean > poorer
 
 
 def test_one_that_goes_wrong_does_not_keep_the_others(square, timers, monkeypatch):
@@ -226,12 +232,7 @@ def test_what_is_out_of_date_in_a_file_is_meshed_once_it_is_open_in_a_window(
 
 
 def test_a_draft_that_cannot_be_finished_is_unlinked_with_a_word_of_it(square, timers, capfd):
-    curve, mesh = square
-    follow(mesh)
-    timers.run()
-    move(curve, 1, 2.0)
-    timers.run(0.1)
-    assert is_draft(mesh)
+    curve, mesh = drafted(square, timers)
     move(curve, 0, 3.0)  # it crosses itself now
     select(mesh)
     assert bpy.ops.tessera.unlink() == {"FINISHED"} and mesh.tessera.source is None
